@@ -21,7 +21,7 @@ class CertificateFile {
   /// Adds an answer's certificate, if it has a proof.
   /// @return why it has none, as one line for the user; empty: it has one.
   std::string add(const Certificate& certificate);
-  /// Writes both files, or none if nothing was added. (Those of an earlier run are gone: removeEarlierOutputs().)
+  /// Writes both files, or none if nothing was added. (removeEarlierOutputs() has removed files of an earlier run.)
   /// @param files  arguments of fcl_artic_verify that say which files the claim is about, each after a space.
   /// @return one line for the user: counts and sizes of what was written; empty if nothing was.
   /// @throws std::runtime_error naming the file.

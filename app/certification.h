@@ -27,6 +27,7 @@ struct CertifiedPlan {
   plans::Plan plan;                         ///< as the file says it
   std::optional<plans::PlanMotion> motion;  ///< that was asked about; none: see `error`
   std::string error;                        ///< why there is no answer; empty: there is one
+  std::vector<std::string> notes;           ///< all there are, also of a plan that is wrong
   CertifiedResult result;
   std::optional<Clearance> clearance;  ///< where it was asked for
   std::optional<ToolLineAnswer> line;  ///< where it was asked for
@@ -71,7 +72,7 @@ void certify(const ArticulatedCollisionManager& manager, const CertifyOptions& o
 
 /// Two bodies by name, the lesser one first.
 using NamePair = std::pair<std::string, std::string>;
-/// What a plan itself does at its ends, and a detour may do too.
+/// Contacts and near pairs of a plan itself at its ends, which a detour may have too.
 struct MendPairs {
   std::set<NamePair> ignored;  ///< pairs that touch at the start and are ignored
   std::set<NamePair> near;     ///< pairs that are nearer than the clearance, at the start or the goal
@@ -83,7 +84,8 @@ struct MendPairs {
 using ManagerForMending =
     std::function<std::shared_ptr<const ArticulatedCollisionManager>(const MendPairs& pairs, double margin)>;
 
-/// Mends those that touch, and certifies what comes out: not the plan in memory, but what writePlans() writes of it.
+/// Mends the plans that touch, and certifies the mended ones: not as they are in memory, but as writePlans() writes
+/// them.
 /// @param managerFor  null: detours keep the clearance from all, and no pair is ignored.
 void mendAll(const std::shared_ptr<const ArticulatedCollisionManager>& manager, const CertifyOptions& options,
              const MendOptions& mending, std::vector<CertifiedPlan>& plans, const ManagerForMending& managerFor = {});

@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "angles.h"
 #include "certificate_file.h"
 #include "certification.h"
 #include "certify_report.h"
@@ -20,6 +19,7 @@
 #include "elapsed.h"
 #include "exit_status.h"
 #include "files/files.h"
+#include "kinematics/angles.h"
 #include "outputs.h"
 #include "plan_variables.h"
 #include "plans/variables.h"
@@ -62,14 +62,14 @@ std::vector<plans::Attached> attachedOf(const KinematicTree& tree, const std::ve
   return out;
 }
 
-/// Whether a plan's values say by themselves that this lies between its waypoints.
+/// Whether a plan's own values show that it has this curve between its waypoints.
 bool isByValues(plans::Interpolation kind) {
   return kind == plans::Interpolation::linear || kind == plans::Interpolation::cubic ||
          kind == plans::Interpolation::quintic;
 }
 
-/// A certified plan in the words of a format, so that who reads it goes the way that was certified: velocities only
-/// where these counted, turns as they were taken, the values of all other joints.
+/// A certified plan in the words of a format. Whoever reads it goes the way that was certified: it has velocities only
+/// where these counted, turns as they were taken, and the values of all other joints.
 plans::Plan writtenPlan(const KinematicTree& tree, const CertifiedPlan& one, plans::Turns turns, bool degrees,
                         plans::Format format) {
   const plans::PlanMotion& motion = *one.motion;
@@ -113,7 +113,7 @@ plans::Plan writtenPlan(const KinematicTree& tree, const CertifiedPlan& one, pla
   return all;
 }
 
-/// The plans that are free, mended ones among them, as a file. It is read again first: what it holds is proven free, or
+/// Writes the free plans, mended ones among them, to a file. Its text is read again first: if that is not proven free,
 /// it is not written.
 void writeOut(const CertifyVerb& o, const ArticulatedCollisionManager& manager, const std::vector<CertifiedPlan>& all) {
   const plans::Format format = plans::formatOf(o.out);
@@ -122,7 +122,7 @@ void writeOut(const CertifyVerb& o, const ArticulatedCollisionManager& manager, 
   for (const CertifiedPlan& plan : all) {
     if (plan.exitStatus() != kExitFree) continue;
     from.push_back(plan.as_mended ? plan.as_mended.get() : &plan);
-    // A mended plan's own steps are what was proven.
+    // For a mended plan, its own steps were proven.
     const plans::Turns turns = plan.as_mended ? plans::Turns::given : o.certify.motion.turns;
     const bool degrees = !plan.as_mended && o.certify.motion.degrees;
     plans::Plan& written = out.emplace_back(writtenPlan(manager.tree(), *from.back(), turns, degrees, format));
@@ -172,8 +172,9 @@ std::string writeCertificates(CertificateFile& certificates, const std::vector<C
   return all.size() == 1 ? written : fmt::format("of {} plans {}", all.size(), written);
 }
 
-/// The plans that have certificates as fcl_artic_verify takes them, each word after a space: CSV files, as they were
-/// given or, of what was mended or has another layout, written; empty where it does not compare them.
+/// The plans that have certificates, as arguments of fcl_artic_verify, each word after a space. They are CSV files: as
+/// given, or, for mended plans and those of another layout, as written. Empty if fcl_artic_verify does not compare
+/// them.
 std::string planArguments(const CertifyVerb& o, const std::vector<CertifiedPlan>& all) {
   const bool as_named = o.columns.columns.columns.empty() && o.columns.columns.skip.empty() &&
                         o.columns.columns.time.empty() && !o.columns.degrees;
@@ -192,7 +193,7 @@ std::string planArguments(const CertifyVerb& o, const std::vector<CertifiedPlan>
     mended = mended || plan.as_mended;
   }
   for (const std::string& value : o.variables.state) text += " --state " + shellWord(value);
-  // What is mended goes straight.
+  // A mended plan goes straight.
   if (mended && (kind == plans::Interpolation::cubic || kind == plans::Interpolation::quintic)) return "";
   return verifierInterpolation(kind, text);
 }
@@ -208,7 +209,7 @@ ViewOptions mendedViews(const ViewOptions& views) {
   return out;
 }
 
-/// Shows the first plan that is not free, or the first, and beside it what it is mended to.
+/// Shows the first plan that is not free, or else the first, and beside it the mended plan.
 /// @return one line for the user.
 std::string writePlanViews(const CertifyVerb& o, const ViewOptions& of_mended, const World& world,
                            const ArticulatedCollisionManager& manager, const std::vector<CertifiedPlan>& all) {
@@ -234,6 +235,11 @@ int runCertify(CertifyVerb& o) {
     throw std::invalid_argument(
         "--mend: detours go straight between waypoints, and a controller that upsamples positions goes another way: "
         "certify a mended plan with its time law, as jtc");
+  }
+  if (!o.tool_line.line.empty() && o.interpolation.kind() == plans::Interpolation::tangentHalfAngle) {
+    throw std::invalid_argument(
+        "--line: no tool is followed along tangents of half angles: leave --line out, or certify the curve that the "
+        "controller runs (--interpolation linear, cubic, quintic or jtc)");
   }
   if (!o.out.empty()) (void)plans::formatOf(o.out);
   std::vector<std::string> inputs = inputsOf(o.world);

@@ -11,7 +11,7 @@
 
 namespace fcl_artic::app {
 
-/// What answers are shown with.
+/// The answers, and the settings with which they are shown.
 struct CertifyReport {
   const KinematicTree& tree;
   const CertifiedRequest& request;
@@ -23,7 +23,7 @@ struct CertifyReport {
 
 /// The answer to a plan that has a motion. It refers to all three.
 Report reportOf(const KinematicTree& tree, const CertifiedRequest& request, const CertifiedPlan& plan);
-/// One plan in full, several as a table, and what they come to.
+/// One plan in full; several as a table, with totals.
 std::string textReport(const CertifyReport& report);
 /// With the keys of fcl_artic(1).
 nlohmann::ordered_json jsonReport(const CertifyReport& report);

@@ -23,7 +23,7 @@ inline int exitStatus(const CertifiedResult& result) {
   return kExitError;
 }
 
-/// Of many answers: an error before a contact before undecided before free.
+/// The status for several answers: an error before a contact before undecided before free.
 inline int worseExit(int a, int b) {
   for (const int status : {kExitError, kExitContact, kExitUndecided}) {
     if (a == status || b == status) return status;

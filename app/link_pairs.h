@@ -19,8 +19,8 @@ LinkPairReport classify(const Robot& robot, LinkPairOptions options);
 /// How many pairs are of which kind: one line.
 std::string summaryOf(const LinkPairReport& report);
 
-/// What is to be said of pairs that an SRDF disables: those that do touch, those that are not proven apart. A line
-/// each; nothing where all is proven.
+/// Lines about pairs that an SRDF disables: those that do touch, those that are not proven apart. There are none if all
+/// is proven.
 /// @param margin  by which they were looked at, m.
 std::vector<std::string> doubtsOf(const KinematicTree& tree, const LinkPairReport& disabled, double margin);
 

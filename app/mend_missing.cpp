@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What stands in for --mend in builds without OMPL.
+// Stands in for --mend in builds without OMPL.
 #include <stdexcept>
 
 #include "mend.h"

@@ -17,9 +17,9 @@ struct Output {
   const std::string* path;  ///< empty: not asked for
 };
 
-/// Removes what lies under the names of a run's outputs: if the run does not write them, nobody does. Of a symbolic
-/// link, the file that it points to goes and the link stays. What is no regular file stays.
-/// To be called before the run reads anything.
+/// Removes what lies under the names of a run's outputs: if the run does not write them, nobody does. If it is a
+/// symbolic link, the file that it points to goes and the link stays. Other things than regular files stay. To be
+/// called before the run reads anything.
 /// @param inputs  the run's own files; of a folder the files in it.
 /// @throws std::invalid_argument naming option and file, before anything is removed: the output is an input or a
 ///   folder, or two outputs are one file.
@@ -46,6 +46,10 @@ class UnwrittenOutputs {
  private:
   std::vector<std::string> reasons_;
 };
+
+/// Prints notes to standard error, a line each.
+/// @param of  what all of them are of, as "'plan.csv'"; empty: they say so themselves.
+void printNotes(const std::vector<std::string>& notes, const std::string& of = {});
 
 /// The files that the options name: robot, SRDF, scenes, carried objects.
 std::vector<std::string> inputsOf(const WorldOptions& options);

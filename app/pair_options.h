@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What verbs say about single bodies and pairs of them: margins of their own, and pairs that may touch.
+// Options about single bodies and pairs of them: margins of their own, and pairs that may touch.
 #pragma once
 
 #include <string>
@@ -26,7 +26,7 @@ void addPairOptions(CLI::App& verb, PairOptions& options);
 
 /// The same, read.
 struct PairSettings {
-  /// What was said of a body or a pair.
+  /// One option, or one line of a file, about a body or a pair.
   struct Said {
     std::string where;  ///< begins messages: the option as it was typed, or file and line
     std::string a, b;   ///< b empty: of all pairs of a
@@ -46,7 +46,7 @@ struct PairSettings {
 ///   one body or pair; std::runtime_error naming the file.
 PairSettings readPairSettings(const PairOptions& options);
 
-/// What can be done about a contact at the motion's begin: names the pair and the options, in one line.
+/// Ways to allow a contact at the motion's begin: names the pair and the options, in one line.
 std::string startHint(const CertifiedContact& contact);
 
 }  // namespace fcl_artic::app

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What verbs say about the joints of plans and edges, in the group "Plans".
+// Options about the joints of plans and edges, in the group "Plans".
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ struct PlanVariables {
   double limit_tolerance = plans::kLimitTolerance;  ///< rad
 };
 
-/// What verbs say of columns and units of files of plans.
+/// Options about columns and units of files of plans.
 struct PlanColumnOptions {
   plans::ColumnOptions columns;
   bool degrees = false;
@@ -32,7 +32,7 @@ void addPlanColumns(CLI::App& verb, PlanColumnOptions& options);
 /// Adds --turns, --joints, --state, --ignore-limits and --limit-tolerance.
 void addPlanVariables(CLI::App& verb, PlanVariables& options);
 
-/// What lies between waypoints.
+/// The curve between waypoints.
 struct InterpolationOptions {
   std::string name = "auto";
   double blend = 0;  ///< s

@@ -32,7 +32,7 @@ int runProgram(int argc, char** argv, const std::function<void(CLI::App& program
       fmt::print(stderr, "fcl_artic: error: {}\nRun with --help for more information.\n", usageError(program, error));
     }
   } catch (const std::exception& error) {
-    // (What can't be printed is reported below.)
+    // (An error of printing is reported below.)
     if (!std::ferror(stdout)) fmt::print(stderr, "fcl_artic: error: {}\n", error.what());
     exit_status = kExitError;
   }

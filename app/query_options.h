@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What verbs say about a query, in the group "Query".
+// Options about a query, in the group "Query".
 #pragma once
 
 #include <CLI/CLI.hpp>

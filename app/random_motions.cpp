@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
-#include "angles.h"
+#include "kinematics/angles.h"
 #include "kinematics/largest_joint_value.h"
 
 namespace fcl_artic::app {
@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kPlaces = 1e6;  // a multiple of its inverse is what its six decimals read as
 
-/// Limits beyond what a motion's joint values may be, as a virtual joint's of +-999999 m, are none to draw from.
+/// Whether values are drawn within the limits. Limits beyond the joint values of any motion, as a virtual joint's
+/// +-999999 m, don't count.
 bool isLimited(const Joint& joint) {
   return hasLimits(joint) && std::max(std::abs(joint.lower), std::abs(joint.upper)) <= kLargestJointValue;
 }

@@ -40,8 +40,9 @@ class RandomMotions {
   Random random_;
 };
 
-/// Number of steps in which OMPL's discrete motion validator samples a motion, its validSegmentCount(): of all joints
-/// with limits together, of each without limits by itself, a step is at most this part of the space's extent.
+/// Number of steps in which OMPL's discrete motion validator samples a motion, its validSegmentCount(). A step is at
+/// most this part of the space's extent. All joints with limits are taken together, each joint without limits by
+/// itself.
 /// @param resolution  such as 0.01, OMPL's default.
 int numSteps(const KinematicTree& tree, const MotionEnds& ends, double resolution);
 

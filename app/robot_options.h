@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What verbs say about a robot: its files, where it stands, what it carries.
+// Options about a robot: its files, where it stands, what it carries.
 #pragma once
 
 #include <string>
@@ -35,8 +35,8 @@ CLI::Option* addRobotOptions(CLI::App& verb, RobotOptions& options, const std::s
 void addAttachOption(CLI::App& verb, RobotOptions& options);
 
 UrdfOptions urdfOptions(const RobotOptions& options);
-/// For scenes and what is carried, whose URDF files look for the same packages.
-/// (Those of WorldOptions are the caller's to add.)
+/// For scenes and carried objects, whose URDF files look for the same packages. (The caller adds the options of
+/// WorldOptions.)
 SceneOptions sceneOptions(const RobotOptions& options);
 
 /// The robot, its allowed pairs and its notes. @throws as loadUrdf() and loadSrdf().
@@ -65,7 +65,7 @@ Attachment parseAttachment(const KinematicTree& tree, const std::string& text);
 /// @return one for each obstacle of these scenes, in their order.
 std::vector<Attachment> readAttachments(const RobotOptions& options, const KinematicTree& tree,
                                         const SceneOptions& scene_options, std::vector<Scene>& scenes);
-/// Has links carry the last obstacles of a scene that the manager has all obstacles of. Needs setup() afterwards.
+/// Makes links carry the last obstacles of a scene, all of whose obstacles the manager has. Needs setup() afterwards.
 void attachLast(const std::vector<Attachment>& attachments, const Scene& scene, ArticulatedCollisionManager& manager);
 /// For a picture: the last obstacles are made geometry of the links that carry them.
 void moveToLinks(const std::vector<Attachment>& attachments, Scene& scene, Robot& robot);

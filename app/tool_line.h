@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a verb says about a tool that is to follow a straight line or an arc.
+// Options about a tool that has to follow a straight line or an arc.
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,7 @@
 
 namespace fcl_artic::app {
 
-/// What the command says.
+/// The options as they were typed.
 struct ToolLineOptions {
   std::string line, via;
 };
@@ -38,7 +38,7 @@ void addToolLine(CLI::App& verb, ToolLineOptions& options, const std::string& gr
 /// @throws std::invalid_argument beginning with the option, also for a link that the robot does not have.
 ToolLine parseToolLine(const KinematicTree& tree, const ToolLineOptions& options);
 
-/// What became of it on one motion.
+/// The tool's deviation on one motion.
 struct ToolLineAnswer {
   ToolLine asked;
   ToolDeviation found;

@@ -64,7 +64,7 @@ std::string requirePng(const std::string& path) {
 }
 
 std::string usageError(const CLI::App& program, const CLI::ParseError& error) {
-  // CLI11 misses a verb or an option first, and doesn't name what it did not know.
+  // CLI11 first reports a missing verb or option, and doesn't name the word that it did not know.
   const CLI::App& verb = verbOf(program);
   std::vector<std::string> unknown = program.remaining(true);
   const auto dashed = std::find_if(unknown.begin(), unknown.end(), [](const auto& word) { return word[0] == '-'; });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the program says of what was typed: checks of options' values, and what was probably meant.
+// Messages about the command line: checks of options' values, and what was probably meant.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ std::string requirePositive(const std::string& text);     ///< a number above 0
 std::string requireInput(const std::string& path);        ///< something to read is there
 std::string requirePng(const std::string& path);          ///< a file name that does not promise another format
 
-/// What is wrong with the command line, in one line, and what was probably meant.
+/// The fault of the command line, in one line, and what was probably meant.
 std::string usageError(const CLI::App& program, const CLI::ParseError& error);
 
 }  // namespace fcl_artic::app

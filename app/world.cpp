@@ -30,7 +30,7 @@ std::shared_ptr<fcl::CollisionObjectd> solidOf(const fcl::CollisionObjectd& obje
 }
 
 /// Makes the meshes of links or obstacles with these names solids.
-/// @param namesOf  of an item of `bodies`, each of which has an `object`: all that it goes by.
+/// @param namesOf  all names of an item of `bodies`, each of which has an `object`.
 /// @param[in,out] names  those that are found are taken out.
 template <class Bodies, class NamesOf>
 void makeSolids(Bodies& bodies, const NamesOf& namesOf, std::set<std::string>& names) {
@@ -201,7 +201,7 @@ LinkPairReport World::provePairs(double margin) {
     for (const std::string& doubt : doubtsOf(*robot.tree, report, margin)) robot.notes.push_back(doubt);
     return report;
   }
-  // Which pairs always touch is no matter of the margin: what only comes near stays checked.
+  // Pairs that always touch are found without the margin: pairs that only come near stay checked.
   LinkPairReport report = classify(robot, search);
   robot.proofs = report.proofs;
   robot.allowed = report.alwaysTouching();

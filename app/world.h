@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What verbs ask questions about: a robot, the pairs of its links that need no check, obstacles, carried objects.
+// The world that verbs ask about: a robot, the pairs of its links that need no check, obstacles, carried objects.
 #pragma once
 
 #include <cstdint>
@@ -39,8 +39,8 @@ void addWorldOptions(CLI::App& verb, WorldOptions& options, const std::string& r
 /// check found again (--auto-srdf /dev/null).
 std::string shellArguments(const WorldOptions& options);
 
-/// The files that the options name as fcl_artic_verify takes them, each word after a space. (Of what links carry it
-/// takes none, and scenes only where it reads all of them.)
+/// The files that the options name as fcl_artic_verify takes them, each word after a space. (It takes no files of
+/// carried bodies, and scenes only where it reads all of them.)
 std::string verifierArguments(const WorldOptions& options);
 /// A word of a shell's command.
 std::string shellWord(const std::string& word);
@@ -55,14 +55,14 @@ class World {
   /// @throws as readPairSettings().
   explicit World(const WorldOptions& options);
 
-  /// Reads the robot, proves pairs of links where the request's queries make use of that, and reads the obstacles.
+  /// Reads the robot, proves pairs of links if the request's queries use that, and reads the obstacles.
   /// @throws as the steps below.
   void open(const CertifiedRequest& request);
 
   /// Reads the robot and the pairs that its SRDF allows.
   /// @throws as loadUrdf() and loadSrdf(), and std::invalid_argument for a link that can't be made solid.
   void readRobot();
-  /// Finds proofs of pairs of links that never come within a margin, and notes what they leave open. With --srdf, of
+  /// Finds proofs of pairs of links that never come within a margin, and notes pairs without a proof. With --srdf, of
   /// the pairs that it and --allow allow. Without, of all pairs: those that always touch become allowed, and
   /// --auto-srdf is written.
   /// @param margin  m.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A mesh that moves freely among meshes: what FCL's users plan for with OMPL's SE3StateSpace, here without a
+// Plans for a mesh that moves freely among meshes, with OMPL's SE3StateSpace, as FCL's users do, but without a
 // resolution.
 #include <iostream>
 

@@ -57,7 +57,7 @@ std::vector<std::shared_ptr<Mesh>> splitMesh(const render::Triangles& all) {
 
 enum class Fate { boxes, visibility, left };
 
-/// What becomes of a pipe: asked of it alone.
+/// The fate of one pipe: the motion is asked with this pipe alone.
 Fate fateOf(const Robot& robot, const std::vector<LinkGeometry>& links, const std::shared_ptr<Mesh>& pipe,
             const JointMotion& motion) {
   fcl::CollisionObjectd obstacle(pipe);

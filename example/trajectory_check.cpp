@@ -7,7 +7,7 @@
 #include <fcl_artic/fcl_artic.h>
 #include <fcl_artic/urdf/urdf.h>
 
-// What MoveIt's trajectory messages hold: names of joints, and points with positions, velocities and a time.
+// The contents of MoveIt's trajectory messages: names of joints, and points with positions, velocities and a time.
 struct Point {
   std::vector<double> positions, velocities;  // rad, rad/s
   double time_from_start;                     // s

@@ -28,8 +28,8 @@ bool insideTetrahedron(const Vec corners[4], const Vec& x) {
   return s != 0 && volume(x, b, c, d) == s && volume(a, x, c, d) == s && volume(a, b, x, d) == s &&
          volume(a, b, c, x) == s;
 }
-/// By which a product of so many lengths comes near 1, from below: 2^k, k >= 0. Inequalities between powers of lengths
-/// are looked at in the unit 2^-k m, for in metres those of small shapes are lost below 2^-64.
+/// 2^k, k >= 0, the factor for each of `lengths` lengths that brings their product near 1, from below. Inequalities
+/// between powers of lengths are computed in the unit 2^-k m: in metres, those of small shapes are lost below 2^-64.
 Tm unitFor(double product, int lengths) {
   int k = 0;
   while (k < 30 && std::ldexp(product, lengths * (k + 1)) <= 1) ++k;
@@ -156,7 +156,7 @@ Meeting checkContact(const World& world, const Motion& motion, Bytes& bytes, Bud
   Poses poses(world, motion.pieces[piece], budget);
   const std::uint8_t kind = bytes.byte();
   if (kind > 4) throw BadInput("there is no witness of kind " + std::to_string(kind));
-  // The one that has the edge or the point, and the other one, in whose coordinates all is computed.
+  // `a` is the body that has the edge or the point. All is computed in the coordinates of the other one.
   const int a = static_cast<int>(kind == 1 || kind == 3 ? second : first);
   const int b = static_cast<int>(kind == 1 || kind == 3 ? first : second);
   const Geometry &A = geometryOf(world, a), &B = geometryOf(world, b);

@@ -22,8 +22,9 @@ struct Real {  // an MPFR number that frees itself
   mpfr_t x;
 };
 
-/// The number of ulps in x, rounded down, for |x| <= 2^40 of 64 bits or more. What is above the integer part is in
-/// [0, 1), and multiples of 2^-64 there have 64 bits: rounded down to x's precision it stays above the same one.
+/// The number of ulps in x, rounded down, for |x| <= 2^40 of 64 bits or more. The part of x above its integer part is
+/// in [0, 1), and multiples of 2^-64 there have 64 bits. So rounding it down to x's precision leaves it at or above the
+/// same multiples.
 Fix floorOf(Real& x) {
   const long whole = mpfr_get_si(x.x, MPFR_RNDD);
   mpfr_sub_si(x.x, x.x, whole, MPFR_RNDD);

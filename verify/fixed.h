@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers of the verifier: integers that count units of 2^-64. Nothing here can wrap: what would leave [-2^40, 2^40] is
-// refused, and a refusal is never a proof.
+// Numbers of the verifier: integers that count units of 2^-64. Nothing here can wrap: a number that would leave [-2^40,
+// 2^40] is refused, and a refusal is never a proof.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The formats: worlds, motions and records, read strictly. No motion is proven free here; but what proofs are told is
-// made here, with its bounds: axes, rotations, closed surfaces, who is ignored until when.
+// The formats: worlds, motions and records, read strictly. No motion is proven free here. But the data on which proofs
+// rest are made here, with their bounds: axes, rotations, closed surfaces, who is ignored until when.
 #include <algorithm>
 
 #include "places.h"
@@ -15,8 +15,8 @@ constexpr std::size_t kMostLines = 200u << 20;  // numbers of lines and entries 
 
 /// Whether a proper rotation is certainly within 2^-49 of the numbers in each entry: without one, the claim would be
 /// about nothing at all. With R = U diag(s) V^T, singular values s >= 0, U V^T is the nearest orthogonal matrix Q, and
-/// entries of R - Q = U diag(s - 1) V^T are at most max |s - 1|. Of the symmetric R R^T - I the eigenvalues are s^2 -
-/// 1, none of which is beyond its Frobenius norm e: |s - 1| = |s^2 - 1| / (s + 1) <= e / (2 - e). So e^2 < 2^-96 is
+/// entries of R - Q = U diag(s - 1) V^T are at most max |s - 1|. The symmetric R R^T - I has the eigenvalues s^2 - 1,
+/// none of which is beyond its Frobenius norm e: |s - 1| = |s^2 - 1| / (s + 1) <= e / (2 - e). So e^2 < 2^-96 is
 /// enough: in whole ulps of 2^-64 it is then at most 2^32 - 1, so e < 2^-48 (1 - 2^-34), and e / (2 - e) < 2^-49. det Q
 /// is the sign of det R. Errors of the products are in the bounds.
 bool isNearRotation(const double numbers[9]) {
@@ -278,7 +278,7 @@ void readElement(Lines& lines, std::string_view kind, std::size_t variables, Fra
   frame.elements.push_back(e);
 }
 
-/// Lines that say nothing: who wrote them meant something else.
+/// Refuses lines without a meaning: whoever wrote them meant something else.
 void refuseUnused(const World& world) {
   std::vector<char> there(world.names.size(), 0), used(world.geometries.size(), 0);
   for (const Body& body : world.bodies) {

@@ -128,7 +128,7 @@ class Printer {
   const std::vector<std::string> not_compared_;
 };
 
-/// What the command says.
+/// The options and files of a command.
 struct Asked {
   bool json = false, quiet = false, compare_only = false, help = false, version = false;
   verify::Options options;
@@ -194,7 +194,7 @@ Asked readCommand(int argc, char** argv) {
   return asked;
 }
 
-/// What is wrong with a command; empty: nothing.
+/// The fault of a command; empty: none.
 std::string faultOf(const Asked& asked) {
   const bool with_files = !asked.urdf.empty() || !asked.srdf.empty() || !asked.scenes.empty(),
              with_plans = !asked.plans.empty() || !asked.from.empty();
@@ -247,7 +247,7 @@ std::vector<verify::Plan> readPlans(const Asked& asked, const verify::World& wor
   return plans;
 }
 
-/// What the world and the motions say, and no file that was given.
+/// The parts of the world and the motions for which no file was given.
 std::vector<std::string> notCompared(const Asked& asked, const verify::World& world) {
   const auto names = [&](verify::Role role) {
     std::set<std::string> all;

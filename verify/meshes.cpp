@@ -288,9 +288,9 @@ Edge edgeOf(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return edge;
 }
 
-/// Whether what triangles without area cover is edges, or corners, of the mesh: the longest edge of each, or both other
-/// ones, are edges of the mesh, or of such a triangle that has been found to be covered. Each step may be off by 2^-47
-/// of a length, so no more than 16 follow one after the other.
+/// Whether triangles without area cover only edges, or corners, of the mesh. The longest edge of each, or both other
+/// ones, must be edges of the mesh, or of another such triangle that has been found to be covered. Each step may be off
+/// by 2^-47 of a length, so no more than 16 follow one after the other.
 bool areEdgesOf(const std::vector<Triangle>& missing, const std::vector<Triangle>& mesh) {
   std::vector<Edge> edges;
   for (const Triangle& t : mesh) {
@@ -397,9 +397,9 @@ const MeshComparison::File& MeshComparison::file(const std::string& path, const 
   return file;
 }
 
-// Whoever cuts a polygon into triangles cuts off one corner after the other, each with a triangle of the mesh. Where
-// the polygon is plane, whatever is cut off so covers it: each point inside is wound around once by the polygon, and
-// that is the sum of how often the triangles wind around it.
+// Whoever cuts a polygon into triangles cuts off one corner after the other, each with a triangle of the mesh. If the
+// polygon is plane, the triangles that are cut off so cover it. The polygon winds once around each point inside, and
+// that is the sum of the triangles' windings around the point.
 bool MeshComparison::cut(const File& file, const Sorted& mesh, bool solid, std::vector<Triangle>& missing) {
   std::map<Triangle, std::size_t> left;
   for (const Triangle& t : mesh.all) ++left[t];

@@ -30,8 +30,8 @@ class MeshComparison {
  public:
   explicit MeshComparison(const World& world);
   /// Whether the world's mesh is the file with its coordinates multiplied. Each triangle of either is one of the other,
-  /// with the same orientation and as often; a face of more than three corners is cut into triangles at its corners. Of
-  /// a surface, triangles without area may be missing that lie on edges of the mesh.
+  /// with the same orientation and as often; a face of more than three corners is cut into triangles at its corners. If
+  /// the mesh is a surface, triangles without area that lie on edges of the mesh may be missing.
   /// @param scale  factors of x, y, z; three more are multiplied by what comes out.
   /// @param missing  set to how many are.
   bool same(const Geometry& mesh, int number, const std::string& path, const std::vector<double>& scale,

@@ -75,7 +75,7 @@ std::string fileOfUrl(const std::string& url) {
   return decoded;
 }
 
-/// The same folder by a path that can be gone up: what ".." is above a link, only the disk knows.
+/// The same folder, by a path whose parents can be read off it: only the disk knows the folder above a symbolic link.
 fs::path withoutDots(const fs::path& folder) {
   std::error_code error;
   const fs::path there = fs::canonical(folder, error);

@@ -12,8 +12,8 @@ namespace verify {
 /// Folders of "package://NAME/", by name.
 using Packages = std::map<std::string, std::string>;
 
-/// Looks for packages as `fcl_artic check` does: at the folder that is given, else by folder name and by package.xml at
-/// and above the URDF, below ROS_PACKAGE_PATH, in share/ of AMENT_PREFIX_PATH.
+/// Looks for packages as `fcl_artic check` does. A folder that is given comes first. Without one, packages are found by
+/// folder name and by package.xml: at and above the URDF, below ROS_PACKAGE_PATH, in share/ of AMENT_PREFIX_PATH.
 class FileFinder {
  public:
   FileFinder(const std::string& urdf, const Packages& packages);

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "readers.h"
+#include "report.h"
 #include "xml.h"
 
 namespace verify {
@@ -144,7 +145,7 @@ class PlanComparison {
  private:
   using Long = long double;
 
-  /// Of a waypoint: its own, or its number.
+  /// The time of a waypoint: the file's, or the waypoint's number.
   double time(std::size_t k) const {
     return columns_.time == Columns::kNone ? static_cast<double>(k) : plan_.rows[k][columns_.time];
   }
@@ -155,7 +156,7 @@ class PlanComparison {
   void count() {
     const std::size_t pieces = motion_.pieces.size(), all = plan_.rows.size() - 1;
     if (pieces > all)
-      different("the motion has " + std::to_string(pieces) + " pieces, the plan " + std::to_string(all));
+      different("the motion has " + counted(pieces, "piece") + ", the plan " + std::to_string(all));
     else if (pieces < all && motion_.until >= 1)
       different("the motion ends at waypoint " + std::to_string(pieces) + " of " + std::to_string(all));
   }
@@ -238,7 +239,7 @@ class PlanComparison {
     standing_ += (standing_.empty() ? "" : ", ") + inQuotes(name) + " " + shortDecimal(value);
   }
 
-  /// Coefficients of a piece, and what a writer's rounding of them is measured by.
+  /// Coefficients of a piece, and the size by which a writer's rounding of them is measured.
   struct Spline {
     Long c[6] = {}, size = 0;
   };
@@ -270,8 +271,8 @@ class PlanComparison {
     return out;
   }
 
-  /// Second derivatives at the waypoints of the spline of cubics through them that is at rest at its first and last
-  /// one, and the largest slope from one to the next.
+  /// The spline of cubics through the waypoints that is at rest at its first and last one: its second derivatives at
+  /// the waypoints. And the largest slope from one waypoint to the next.
   struct Rest {
     std::vector<Long> bend;
     Long slope = 0;
@@ -398,8 +399,8 @@ std::map<std::string, double> readConfiguration(const World& world, const std::v
   const std::vector<std::string> words = wordsOf(text, ", \t\r\n");
   const bool named = !words.empty() && words[0].find('=') != std::string::npos;
   if (!named && words.size() != order.size())
-    throw BadInput("'" + text + "' has " + std::to_string(words.size()) + " values for " +
-                   std::to_string(order.size()) + " variables");
+    throw BadInput("'" + text + "' has " + counted(words.size(), "value") + " for " +
+                   counted(order.size(), "variable"));
   for (std::size_t k = 0; k < words.size(); ++k) {
     const std::size_t equals = words[k].find('=');
     if ((equals != std::string::npos) != named)

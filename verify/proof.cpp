@@ -25,8 +25,8 @@ std::vector<Opponent> opponents(const World& world, const Motion& motion, std::s
   for (const Partner& partner : world.partners[body]) {
     if (!inScope(motion, partner)) continue;
     const double own = world.margin(body, partner.body, motion.margin);
-    // An ignored pair is left out at and before its time, of which the lower end is taken; whether that is to the end
-    // of the piece is decided in doubles.
+    // An ignored pair is left out at and before its time, whose lower end is taken. Doubles decide whether it is left
+    // out to the end of the piece.
     const auto pair = ignored.find({partner.body, body});
     const Fix from = pair == ignored.end()                  ? Fix{-kOne}
                      : pair->second >= endOf(motion, piece) ? integer(2)
@@ -83,10 +83,10 @@ class Walk {
     if (task.q - task.p == 1) task.l = partner(task).pieces();
   }
 
-  /// What was looked at last, for people.
+  /// Where the walk was last, for people.
   std::string where() const {
-    const std::string others =
-        at_.q - at_.p > 1 ? " and " + std::to_string(at_.q - at_.p - 1) + " bodies after it" : "";
+    const std::string more = at_.q - at_.p == 2 ? " body after it" : " bodies after it",
+                      others = at_.q - at_.p > 1 ? " and " + std::to_string(at_.q - at_.p - 1) + more : "";
     return ": " + world_.describe(a_) + " and " + world_.describe(partners_[at_.p].body) + others + ", time [" +
            shown(at_.span.a) + ", " + shown(at_.span.b) + "] of piece " + std::to_string(piece_);
   }
@@ -150,7 +150,7 @@ class Walk {
       throw NotProven("SOLID names points of an ignored pair");
   }
 
-  /// f(x) = v.x + d in the coordinates of a frame, by which the task's bodies are told apart: v and d are constant.
+  /// f(x) = v.x + d in the coordinates of a frame, with constant v and d. It keeps the task's bodies apart.
   struct Line {
     int frame = 0, wall = -1;  // wall: the one body without bounds, on all of which f or -f is at most 0
     Vec v{};
@@ -174,7 +174,7 @@ class Walk {
     separated(task, all, line, task.span, 0);
   }
 
-  /// A power of two scales n to 1 at most; which n it is has no influence on what is proven.
+  /// A power of two scales n to 1 at most. The choice of n does not matter to the proof.
   Line direction(const Task& task, std::uint8_t kind) {
     const int where = kind % 3, bytes = kind < kSepFine ? 2 : 4;
     Line line;
@@ -183,8 +183,8 @@ class Walk {
     return line;
   }
 
-  // f = d - n.x of the halfspace n.x <= d, or of either side of a plane: it is not below 0 where the wall is, and is to
-  // be below it where the other body is. Where the wall is the partner, -f.
+  // f = d - n.x of the halfspace n.x <= d, or of either side of a plane. It is at least 0 on the wall, and must be
+  // below 0 on the other body. If the wall is the partner, -f.
   Line wall(const Task& task, bool turned) const {
     if (task.q - task.p != 1) throw NotProven("WALL has more than one partner");
     const bool own = geometryOf(world_, a_).unbounded();
@@ -202,7 +202,7 @@ class Walk {
 
   // For all t in the span: max over A of -f + max over a partner of f + margin |v| < 0, by the Bernstein coefficients
   // of each sum (support.cpp). Partners that are not shown to be apart over the whole span are looked at again over its
-  // halves. (Where they are not apart, the first time at which they are not ends it.)
+  // halves. (If they are not apart, the first such time ends the search.)
   void separated(const Task& task, const std::vector<std::uint32_t>& partners, const Line& line, const Span& span,
                  int halvings) {
     if (partners.empty()) return;
@@ -249,9 +249,9 @@ class Walk {
   Task at_;
 };
 
-// A motion goes on in each piece where it was at the end of the one before. Coefficients are rounded: 2^-29 rad or m,
-// and 2^-39 of a joint's value but 2^-20 at most, are no jump. (Its offset is the same on both sides.) Of `rotate` the
-// orientations are compared, each entry of their matrices.
+// In each piece a motion goes on where it was at the end of the piece before. Coefficients are rounded: 2^-29 rad or m,
+// and 2^-39 of a joint's value but 2^-20 at most, are no jump. (A joint's offset is the same on both sides.) For
+// `rotate` the orientations are compared, each entry of their matrices.
 double largestJump(const World& world, const Motion& motion, Budget& budget) {
   Fix largest;
   for (std::size_t k = 1; k < motion.pieces.size(); ++k) {

@@ -40,8 +40,8 @@ Comparison compareWithSrdf(const World& world, const std::string& path);
 Comparison compareWithScenes(const World& world, const std::vector<std::string>& paths, const Packages& packages,
                              const Solids& solids = {}, double scale = 1);
 
-/// What lies between two waypoints. upsampled: of positions alone the one spline of cubics from rest to rest whose
-/// velocity and acceleration do not jump; with velocities as automatic.
+/// The curve between two waypoints. `upsampled` takes positions alone: the one spline of cubics from rest to rest whose
+/// velocity and acceleration do not jump. If there are velocities, it is as `automatic`.
 enum class Interpolation { automatic, linear, cubic, quintic, upsampled };
 
 /// Waypoints as a file or a user says them.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is said to people: of a world, of a motion, of a verdict. Nothing is proven here.
+// Texts for people: about a world, a motion, a verdict. Nothing is proven here.
 #pragma once
 
 #include <string>
@@ -10,13 +10,16 @@
 
 namespace verify {
 
-/// What the world's text says beside its numbers: whose bodies, which of them move with a link, which pairs are not
-/// checked, margins. A line each.
+/// "1 link", "2 links". @param many  of a noun that does not end in s when there are several of it.
+std::string counted(std::size_t n, const std::string& one, const std::string& many = {});
+
+/// The statements of the world beside its numbers, one line each: whose bodies, which of them move with a link, which
+/// pairs are not checked, margins.
 std::vector<std::string> linesOf(const World& world);
-/// What the motion says: what is checked, margin, start and goal, pairs that are ignored up to a time.
+/// The statements of the motion: what is checked, margin, start and goal, pairs that are ignored up to a time.
 std::vector<std::string> linesOf(const World& world, const Motion& motion, const Verdict& verdict);
-/// Whether a verified claim leaves something out that files do not: it ends early, or a pair is not checked for all of
-/// its time, or at all, by the motion's own word.
+/// Whether a verified claim leaves something out that files do not: it ends early, or the motion itself leaves out a
+/// pair, for some time or always.
 bool isInPart(const Verdict& verdict);
 /// Whom a claim is about, as the parts of a sentence; a file is named where it was compared with one.
 struct Subject {
@@ -35,8 +38,8 @@ std::string notChecked(const Verdict& verdict);
 /// first, which begins with `begin`, are indented.
 std::string wrapped(const std::string& begin, std::string_view text);
 
-/// Text that may hold names, made safe to print: what is no printing character as \xNN, and no "VERIFIED" in it, so
-/// that no name looks like a verdict.
+/// Text that may hold names, made safe to print. Characters that do not print become \xNN, and "VERIFIED" does not
+/// stand in it, so that no name looks like a verdict.
 std::string shown(std::string_view text);
 
 /// The same as JSON. Numbers that JSON has not, "nan" and infinite ones, are strings.

@@ -17,7 +17,7 @@ struct Place {
   Mat R;
   std::vector<double> t;
 };
-/// What moves along or about an axis: multiplier * q + offset, q being the variable of that name.
+/// The value along or about an axis: multiplier * q + offset, q being the variable of that name.
 struct Driver {
   std::string variable;
   double multiplier = 1, offset = 0;
@@ -53,9 +53,9 @@ class Robot {
   /// The joint that carries a link; null: the link is the root.
   const Joint* jointAbove(const std::string& link) const;
 
-  /// What drives a joint of one variable: its own, or what it follows in the end. A chain's multipliers and offsets are
-  /// put together in doubles, as `m1 (m2 q + c2) + c1 = (m1 m2) q + (m1 c2 + c1)`. Where the joint at the end is fixed,
-  /// it stands at `offset`.
+  /// The variable that drives a joint of one variable: its own, or the one that it follows in the end. A chain's
+  /// multipliers and offsets are put together in doubles, as `m1 (m2 q + c2) + c1 = (m1 m2) q + (m1 c2 + c1)`. Where
+  /// the joint at the end is fixed, it stands at `offset`.
   struct Driven {
     Driver driver;
     bool still = false;
@@ -76,7 +76,7 @@ class Robot {
   std::map<std::size_t, Driven> known_;
 };
 
-/// Of x, y, z, roll, pitch, yaw.
+/// The place with these x, y, z, roll, pitch, yaw.
 Place placeOf(const std::vector<double>& six);
 /// Whether the numbers are that place: the rotation within 2^-49, so that it is among those that the claim is about;
 /// the translation to the very bit.

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "readers.h"
+#include "report.h"
 #include "shapes.h"
 
 namespace verify {
@@ -87,14 +88,14 @@ std::vector<Obstacle> readScene(const std::string& path, const Packages& package
   return obstacles;
 }
 
-/// A name without #NUMBER at its end, which each of several of that name gets but the first.
+/// A name without #NUMBER at its end. If several have one name, each but the first gets such a number.
 std::string withoutNumber(const std::string& name) {
   const std::size_t at = name.rfind('#');
   const bool number =
       at != name.npos && at + 1 < name.size() && name.find_first_not_of("0123456789", at + 1) == name.npos;
   return number ? name.substr(0, at) : name;
 }
-/// Without any. (A file's names may be taken by another file's.)
+/// A name without any such numbers. (Another file may have taken the names of this one.)
 std::string baseOf(std::string name) {
   for (std::string less = withoutNumber(name); less != name; less = withoutNumber(name)) name = less;
   return name;
@@ -110,15 +111,14 @@ class SceneComparison {
   SceneComparison(const World& world, const Solids& solids, double scale)
       : world_(world), scale_(scale), shapes_(world, solids, scale) {
     for (std::size_t b = 0; b < world.bodies.size(); ++b)
-      if (world.bodies[b].role == Role::obstacle) bodies_[baseOf(world.bodies[b].name)].push_back(static_cast<int>(b));
+      if (world.bodies[b].role == Role::obstacle) bodies_[baseOf(world.bodies[b].name)].insert(static_cast<int>(b));
   }
 
   Comparison run(const std::vector<Obstacle>& obstacles) {
     for (const Obstacle& o : obstacles) find(o);
     for (const auto& [name, bodies] : bodies_)
-      for (const int b : bodies)
-        if (used_.count(b) == 0) result_.differences.push_back(world_.describe(b) + " is in no scene");
-    result_.notes.push_back("the scene has " + std::to_string(obstacles.size()) + " obstacles" +
+      for (const int b : bodies) result_.differences.push_back(world_.describe(b) + " is in no scene");
+    result_.notes.push_back("the scene has " + counted(obstacles.size(), "obstacle") +
                             (result_.differences.empty() ? ", as the world has" : ""));
     if (rounded_ > 0)
       result_.notes.push_back(std::to_string(rounded_) +
@@ -131,13 +131,12 @@ class SceneComparison {
  private:
   void find(const Obstacle& o) {
     std::string why;
-    const auto found = bodies_.find(baseOf(o.name));
-    for (std::size_t k = 0; found != bodies_.end() && k < found->second.size(); ++k) {
-      const int b = found->second[k];
-      if (used_.count(b) > 0 || !isCalled(world_.bodies[static_cast<std::size_t>(b)].name, o.name)) continue;
+    std::set<int>& open = bodies_[baseOf(o.name)];
+    for (const int b : open) {
+      if (!isCalled(world_.bodies[static_cast<std::size_t>(b)].name, o.name)) continue;
       if (++pairs_ > 2000000) throw BadInput("the scene has too many obstacles of one name: not compared");
       if (isObstacle(o, b)) {
-        used_.insert(b);
+        open.erase(b);
         rounded_ += o.at.empty();
         return;
       }
@@ -152,10 +151,10 @@ class SceneComparison {
            shapes_.same(o.shape, {o.name, b.name}, body);
   }
 
-  /// Where one pose places it, to the very bit. Where several do, a writer multiplies them in doubles, so that what the
-  /// claim is about may be off the file: each R t + t' by less than 8 u of all lengths so far, u = 2^-53 (3 u in each
-  /// entry of R, which is made of sines, and 3 u of the sum). Of four of them that is 32 u = 2^-48; a longer chain of a
-  /// writer may be refused.
+  /// Whether an obstacle is where the file has it: to the very bit where one pose places it. Where several poses place
+  /// it, a writer multiplies them in doubles, so the claim may be about a place that is off the file's. Each R t + t'
+  /// is off by less than 8 u of all lengths so far, u = 2^-53: 3 u in each entry of R, which is made of sines, and 3 u
+  /// of the sum. For four of them that is 32 u = 2^-48; a longer chain of a writer may be refused.
   bool isThere(const Obstacle& o, const double* t) const {
     const Tm scale = exactly(scale_);
     Fix sum;
@@ -171,8 +170,7 @@ class SceneComparison {
   const World& world_;
   const double scale_;
   ShapeComparison shapes_;
-  std::map<std::string, std::vector<int>> bodies_;  // of role obstacle, by name without numbers
-  std::set<int> used_;
+  std::map<std::string, std::set<int>> bodies_;  // of role obstacle that no file has yet, by name without numbers
   std::size_t pairs_ = 0, rounded_ = 0;
   Comparison result_;
 };

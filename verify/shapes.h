@@ -18,9 +18,10 @@ class ShapeComparison {
 
   /// Whether the body's geometry, wherever it is, is that shape. @param name  of its link or obstacle in the file.
   bool same(const Collision& shape, const std::set<std::string>& names, int body);
-  /// What may explain the last answer, as an end of a message.
+  /// A possible reason of the last answer, as an end of a message.
   const std::string& why() const { return why_; }
-  /// Adds how many meshes were found to be surfaces and solids, which had to be solids, and what of them is left out.
+  /// Adds notes: how many meshes were found to be surfaces and solids, which had to be solids, and which of their
+  /// triangles are left out.
   /// @param whose  "links"
   void note(const std::string& whose, Comparison& comparison) const;
 

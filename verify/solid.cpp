@@ -48,7 +48,7 @@ std::int64_t windingNumber(const Geometry& mesh, const Vec& x, std::size_t k, bo
 void checkOutside(const World& world, Poses& poses, int a, int b, Fix t, const OutsidePoint*& next,
                   const OutsidePoint* end) {
   const Geometry &A = geometryOf(world, a), &B = geometryOf(world, b);
-  // What is without bounds is not inside of what has them. (B's surface is closed: readWorld() has seen to it.)
+  // An unbounded body is not inside of a bounded one. (B's surface is closed: readWorld() has seen to it.)
   if (!B.solid || A.unbounded()) return;
   const Relative toB(world, poses, {t, t}, a, b);
   const bool mesh = A.kind == Geometry::mesh;

@@ -6,7 +6,7 @@
 namespace verify {
 namespace {
 
-/// What of each frame counts for neighbours, found once.
+/// The facts about each frame that count for neighbours, found once.
 struct FrameFacts {
   bool moves;  // has elements
   bool free;   // and moves freely on what stands still
@@ -32,8 +32,7 @@ std::vector<FrameFacts> factsOf(const World& world) {
   return facts;
 }
 
-/// What is wrong with a reason, as far as it is not the user's word; empty: nothing. See "Pairs" in
-/// doc/CERTIFICATES.md.
+/// The fault of a reason, as far as it is not the user's word; empty: none. See "Pairs" in doc/CERTIFICATES.md.
 std::string faultOf(const World& world, const std::vector<FrameFacts>& facts, Reason reason, const Body& a,
                     const Body& b, std::uint64_t& steps) {
   const auto isEither = [&](Role role) { return a.role == role || b.role == role; };

@@ -37,8 +37,8 @@ enum class Reason { same_frame, obstacles, still, neighbours, allowed, touch_lin
 constexpr int kReasons = 8;
 const char* nameOf(Reason reason);
 const char* nameOf(Role role);
-/// A name in quotes, such that no name looks like another text: quotes, backslashes and what is no printing character
-/// as \xNN.
+/// A name in quotes, so that no name looks like another text: quotes, backslashes and characters that do not print
+/// become \xNN.
 std::string inQuotes(std::string_view name);
 
 struct Body {
@@ -93,7 +93,7 @@ struct Motion {
   std::vector<Piece> pieces;
 };
 
-/// Finds what is derived of a world: partners, pairs that are not checked. @throws BadInput
+/// Derives from a world the partners of each body, and the pairs that are not checked. @throws BadInput
 void derivePairs(World& world);
 /// @throws BadInput, naming the line.
 World readWorld(std::string_view text);

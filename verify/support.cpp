@@ -31,7 +31,7 @@ void Geometry::prepare() {
     }
     cells_.push_back(box);
   };
-  // Halves of what is below 2^-1022 are covered by an ulp.
+  // Halves of numbers below 2^-1022 are covered by an ulp.
   if (kind == mesh) pieces_ = static_cast<std::uint32_t>(triangles.size() / 3);
   if (kind == boxes) pieces_ = static_cast<std::uint32_t>(cells.size() / 6);
   for (const double* c = cells.data(); c != cells.data() + cells.size(); c += 6)
@@ -58,7 +58,7 @@ Box Geometry::boxOf(std::uint32_t item) const {
   return box;
 }
 
-// Corners at one place are one: so what is joined does hang together, and edges that meet cancel.
+// Corners at one place are one: so parts that are joined do hang together, and edges that meet cancel.
 bool Geometry::joinSurfaces() {
   std::map<std::array<double, 3>, std::uint32_t> places;
   std::vector<std::uint32_t> same, root;  // of each vertex
@@ -101,8 +101,8 @@ std::uint32_t Geometry::build(std::uint32_t i, std::uint32_t j) {
 }
 
 /// Branch and bound for the most of a direction over the items [i, j). Every value and every bound is less than 3 ulp
-/// too small, so what is left out is at most 3 ulp above `best`, which is at most 3 ulp below its own exact value:
-/// together 6 ulp.
+/// too small. So an item that is left out is at most 3 ulp above `best`. And `best` is at most 3 ulp below its own
+/// exact value: together 6 ulp.
 struct Geometry::Search {
   const Geometry& g;
   const std::uint32_t i, j;

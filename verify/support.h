@@ -57,10 +57,10 @@ struct Geometry {
   std::vector<Point> points;  // within 1 ulp
   std::vector<Round> rounds;  // of round shapes: the one piece is their hull
 
-  /// Of a mesh, after joinSurfaces(): a part that hangs together per triangle.
+  /// For a mesh, after joinSurfaces(): the number of the connected part to which each triangle belongs.
   std::vector<std::uint32_t> part;
   /// @return whether the surface is closed and consistently oriented: each edge is passed by triangles as often in one
-  /// direction as in the other. Of every `mesh solid` of a World it is: readWorld() refuses the others.
+  /// direction as in the other. Every `mesh solid` of a World is: readWorld() refuses the others.
   bool joinSurfaces();
 
   /// Upper bounds of f(p) over all points p of the pieces [i, j), for f(p) = v.p + d: of the three Bernstein

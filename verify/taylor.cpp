@@ -53,8 +53,8 @@ Mat rotation(const Vec& k, const Mat& kk, const Tm& angle) {
 //   B = (1 - cos|w|)/|w|^2   = 1/2 (1 - z/(3*4) (1 - z/(5*6) (1 - ...
 // The brackets after step k are 1 - x1 + x1 x2 - ... with x_i = z/(m(m+1)), m >= 2k: where all x_i <= 1/2, they are in
 // [-2, 2]. At k = 40 and z <= 100: x_i <= 100/6480. From there back to the front the bracket is divided 40 times.
-// Longer vectors: exp([w]) = exp([w/2])^2, again and again; dot() refuses what is out of range. Of a rotation whose
-// enclosure has become useless no more is said than that its numbers are in [-1, 1].
+// Longer vectors: exp([w]) = exp([w/2])^2, again and again; dot() refuses what is out of range. If a rotation's
+// enclosure has become useless, only this much is said: its numbers are in [-1, 1].
 Mat rotation(const Vec& w) {
   const Tm z = dot(w, w);
   if (bound(z) > integer(100)) {

@@ -42,10 +42,10 @@ inline Tm operator-(const Tm& a) {
 }
 
 /// (p + [-ra, ra])(q + [-rb, rb]) lies in p q + [-R, R], R = |p| rb + |q| ra + ra rb, |p| <= |a0| + |a1| + |a2|.
-/// Of p q the powers s^3 and s^4 are replaced by Chebyshev's polynomials T3 = 4 s^3 - 3 s, T4 = 8 s^4 - 8 s^2 + 1,
-/// which are in [-1, 1]: s^3 = 3/4 s + T3/4, s^4 = s^2 - 1/8 + T4/8: a quarter and an eighth of the coefficient is left
-/// over. Each product and each shift is off by less than one ulp: at most 9 products and 3 shifts in the polynomial, 12
-/// ulp.
+/// In p q the powers s^3 and s^4 are replaced by Chebyshev's polynomials T3 = 4 s^3 - 3 s, T4 = 8 s^4 - 8 s^2 + 1,
+/// which are in [-1, 1]. As s^3 = 3/4 s + T3/4 and s^4 = s^2 - 1/8 + T4/8, a quarter and an eighth of the coefficient
+/// is left over. Each product and each shift is off by less than one ulp: at most 9 products and 3 shifts in the
+/// polynomial, 12 ulp.
 inline Tm operator*(const Tm& a, const Tm& b) {
   if (isZero(a) || isZero(b)) return {};
   const Fix e3 = a.c1 * b.c2 + a.c2 * b.c1, e4 = a.c2 * b.c2;

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "readers.h"
+#include "report.h"
 #include "robot.h"
 #include "shapes.h"
 
@@ -17,11 +18,12 @@ struct Step {
   Element::Kind kind;
   std::array<double, 3> axis;  // of slide and turn
   Driver driver;
-  bool rounded = false;  // the axis is computed: within 2^-52 of what is meant
+  bool rounded = false;  // the axis is computed: within 2^-52 of the one that is meant
 };
 
-/// Whether the unit vector along `axis` is one that the element is about: of a coordinate axis this very one, else one
-/// within 2^-50 in each entry of the unit vector along the element's numbers.
+/// Whether the unit vector along `axis` is one that the element is about. For a coordinate axis this is the very
+/// vector. For any other axis it is a vector within 2^-50, in each entry, of the unit vector along the element's
+/// numbers.
 /// @param off  how far that unit vector may be off what is meant, in each entry.
 bool isAlong(const Element& e, const std::array<double, 3>& axis, Fix off) {
   if (isCoordinateAxis(e.axis)) {
@@ -50,7 +52,7 @@ std::array<std::array<double, 3>, 2> planeOf(const std::array<double, 3>& axis) 
   return {{{d(c + k * x * x), d(k * x * y), d(-y)}, {d(k * x * y), d(c + k * y * y), d(x)}}};
 }
 
-/// What a joint adds to the names of its variables.
+/// The endings that a joint adds to the names of its variables.
 std::vector<const char*> endingsOf(const Joint& j) {
   if (j.type == "fixed" || j.mimics) return {};
   if (j.type == "planar") return {"/x", "/y", "/theta"};
@@ -88,9 +90,9 @@ class UrdfComparison {
     for (const Link& l : robot_.links) link(l);
     nothingLeft();
     root();
-    result_.notes.push_back("the file has " + std::to_string(robot_.links.size()) + " links, " +
-                            std::to_string(robot_.joints.size()) + " joints and " + std::to_string(matched_) +
-                            " collision geometries, as the world has");
+    result_.notes.push_back("the file has " + counted(robot_.links.size(), "link") + ", " +
+                            counted(robot_.joints.size(), "joint") + " and " +
+                            counted(matched_, "collision geometry", "collision geometries") + ", as the world has");
     shapes_.note("links", result_);
     return std::move(result_);
   }
@@ -168,7 +170,7 @@ class UrdfComparison {
     const int frame = frameOf(l.name);
     if (frame < 0) return;
     std::vector<int>& bodies = bodies_[static_cast<std::size_t>(frame)];
-    // Most writers keep the file's order; where one does not, each body is looked for.
+    // Most writers keep the file's order. If one does not, each body is searched for.
     std::vector<char> used(bodies.size(), 0);
     std::vector<std::size_t> open;
     for (std::size_t k = 0; k < l.collisions.size(); ++k)
@@ -245,7 +247,7 @@ class UrdfComparison {
       // A writer puts the base's pose into one frame, the root's own.
       if (!base_.empty() && !(up == f ? isAt(placeOf(base_), frame.numbers) : here))
         different("the root link " + inQuotes(name) + " is not where --base says (else at the world's origin)");
-      // Where it must stand somewhere, it moves from there as a joint that a writer adds, or not at all.
+      // If it must stand somewhere, it moves from there as a joint that a writer adds, or not at all.
       if (!base_.empty() && !frame.elements.empty())
         compareSteps(up == f ? freely("floating_base") : std::vector<Step>(), frame, false, wrong);
       for (const Element& e : frame.elements) {

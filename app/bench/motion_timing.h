@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What `bench robot` measures: random motions by what they meet, the time of each way of asking about them, and whether
-// the answers contradict each other.
+// The measurements of `bench robot`: random motions by what they meet, the time of each way of asking about them, and
+// whether the answers contradict each other.
 #pragma once
 
 #include <cstddef>
@@ -64,8 +64,8 @@ struct TimedRow {
   double slowest() const { return quantile(1); }
 };
 
-/// Number of further passes over the motions that the 99.9 % and the slowest of a row rest on: one pass in which the
-/// machine did something else must not look like a slow query.
+/// Number of further passes over the motions, for the 99.9 % and the slowest of a row. One pass in which the machine
+/// did something else must not look like a slow query.
 constexpr int kPassesOfSlowest = 10;
 
 /// Asks about all motions in all ways, `passes` times in turns, and holds the answers to what drawMotions() found.

@@ -22,12 +22,11 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "angles.h"
 #include "bench/bars.h"
-#include "bench/step_bench.h"
 #include "elapsed.h"
 #include "exit_status.h"
 #include "files/files.h"
+#include "kinematics/angles.h"
 #include "outputs.h"
 #include "planning/fcl_state_check.h"
 #include "progress.h"
@@ -65,7 +64,7 @@ std::optional<double> residentKilobytes() {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1024;
 }
 
-/// What the robot and its scene consist of, and what it took to set them up.
+/// Contents of the robot and its scene, and the cost of setting them up.
 struct Setup {
   std::size_t links_with_geometry = 0, robot_triangles = 0, scene_triangles = 0;
   std::size_t checked_pairs = 0, pairs_apart = 0, pairs_allowed = 0;
@@ -79,9 +78,9 @@ std::size_t numTriangles(const fcl::CollisionObjectd& object) {
 }
 
 /// Measures a motion in all ways: the manager's queries, and FCL's check of states.
-class Asked {
+class MeasuredRobot {
  public:
-  Asked(const WorldOptions& options, const VisibilityChoice& visibility) : world_(options) {
+  MeasuredRobot(const WorldOptions& options, const VisibilityChoice& visibility) : world_(options) {
     request_.visibility = visibility.mode;
     (void)makeCuller(visibility.executor);             // refused before files are read
     auto measured = [last = Clock::now()]() mutable {  // ms since it was last called
@@ -104,7 +103,7 @@ class Asked {
 
   const Setup& setup() const { return setup_; }
   VisibilityMode visibility() const { return request_.visibility; }
-  /// What stage 2 did in all of the manager's queries for first or any contacts.
+  /// The work of stage 2 in all of the manager's queries for first or any contacts.
   const QueryStatistics& stage2() const { return stage2_; }
   const World& world() const { return world_; }
   std::vector<std::string> notes() const { return world_.notes(*manager_); }
@@ -201,7 +200,7 @@ class Asked {
 /// All that one run found out.
 struct Outcome {
   const RobotBenchOptions& options;
-  const Asked& asked;
+  const MeasuredRobot& asked;
   DrawnMotions drawn;
   std::vector<TimedRow> rows;
   std::vector<Contradiction> contradictions;
@@ -384,7 +383,7 @@ int benchRobot(RobotBenchOptions& options) {
   if (options.no_fcl && options.only.find("FCL") != std::string::npos) {
     throw std::invalid_argument("--only '" + options.only + "' is a row of FCL's: leave --no-fcl out");
   }
-  Asked asked(options.world, options.visibility);
+  MeasuredRobot asked(options.world, options.visibility);
   RandomMotions random(asked.tree(), options.angle * kRadiansPerDegree, options.seed);
   const Questions questions = asked.questions(!options.no_fcl);
   Outcome outcome{options, asked, {}, {}, {}};

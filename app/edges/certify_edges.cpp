@@ -26,8 +26,8 @@
 #include "exit_status.h"
 #include "fcl_artic/certificate.h"
 #include "files/files.h"
+#include "outputs.h"
 #include "report/request_json.h"
-#include "text/one_line.h"
 #include "threads/parallel.h"
 
 namespace fcl_artic::app {
@@ -49,8 +49,8 @@ std::string duration(double seconds) {
   return s >= 60 ? fmt::format("{} min {} s", s / 60, s % 60) : fmt::format("{} s", s);
 }
 
-/// What is done, its rate and the time that is left, on standard error: on a terminal in place each second, else a line
-/// now and then, as logs of jobs want it.
+/// Shows on standard error how much is done, its rate, and the time that is left. On a terminal it renews one line each
+/// second; elsewhere it writes a line now and then, as logs of jobs want it.
 class EdgeProgress {
  public:
   /// @param rows  of all. @param shown  whether to show anything.
@@ -92,7 +92,7 @@ class EdgeProgress {
   const Clock::time_point begin_ = Clock::now();
 };
 
-/// What the answers depend on, but for the engine.
+/// All that the answers depend on, but for the engine.
 Json describe(const WorldOptions& world, const World& read, const EdgesOptions& o, const EdgeSource& edges,
               const SceneSource& scenes) {
   std::vector<std::string> links;
@@ -144,7 +144,7 @@ class Stage {
         told_(world.scene.notes.begin(), world.scene.notes.end()),
         speaks_(speaks) {}
 
-  /// Has the obstacles of this scene stand there, and no others but the world's own.
+  /// Replaces the obstacles: those of this scene and the world's own stand there, and no others.
   /// @throws naming the scene.
   void enter(std::size_t scene) {
     if (scene_ == static_cast<std::ptrdiff_t>(scene)) return;
@@ -174,13 +174,13 @@ class Stage {
   std::int32_t numberOf(const BodyRef& body) const { return number_of_.at(body.object); }
 
  private:
-  /// Each note once, of so many scenes that nobody would read all of them the first ones.
+  /// Prints each note once. If there are more than anybody would read, prints only the first ones.
   void tellNotes(std::size_t scene, const std::vector<std::string>& notes) {
-    constexpr std::size_t kMostTold = 50;
+    constexpr std::size_t kMaxTold = 50;
     for (const std::string& note : notes) {
-      if (!speaks_ || !told_.insert(note).second || ++num_told_ > kMostTold) continue;
-      fmt::print(stderr, "fcl_artic: note: scene {} ('{}'): {}\n", scene, scenes_.name(scene), text::oneLine(note));
-      if (num_told_ == kMostTold) fmt::print(stderr, "fcl_artic: note: notes of further scenes are not printed\n");
+      if (!speaks_ || !told_.insert(note).second || ++num_told_ > kMaxTold) continue;
+      printNotes({note}, fmt::format("scene {} ('{}')", scene, scenes_.name(scene)));
+      if (num_told_ == kMaxTold) fmt::print(stderr, "fcl_artic: note: notes of further scenes are not printed\n");
     }
   }
 
@@ -284,7 +284,7 @@ class Answerer {
   std::map<std::size_t, std::shared_ptr<const std::string>> worlds_;  ///< of the block's certificates
 };
 
-/// What became of the blocks that a process took.
+/// The fate of the blocks that a process took.
 struct Outcome {
   bool blocks_failed = true, something_else_failed = false;  ///< else: rows are refused, --auto-srdf is not written
 };
@@ -301,17 +301,17 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
   const bool speaks = ranks.rank() == 0 && !o.quiet;
   Stage stage(world, scenes, !o.quiet);
   if (speaks) {
-    for (const std::string& note : world.notes(stage.manager())) fmt::print(stderr, "fcl_artic: note: {}\n", note);
-    for (const std::string& note : scenes.notes()) fmt::print(stderr, "fcl_artic: note: {}\n", note);
+    printNotes(world.notes(stage.manager()));
+    printNotes(scenes.notes());
   }
   const int threads = o.threads == 0 && ranks.size() > 1 ? 1 : o.threads;
   Answerer answerer(stage, edges, o, *folder, threads);
   const Cut cut = folder->cut();
   EdgeProgress progress(ranks.share() * static_cast<double>(cut.rows()), speaks);
   std::vector<std::string> errors;  // each once, whatever the number of blocks that meet it
-  std::set<std::string> told;
-  const auto tell = [&](const char* error) {
-    if (told.insert(error).second) errors.emplace_back(error);
+  std::set<std::string> noted;
+  const auto noteError = [&](const char* error) {
+    if (noted.insert(error).second) errors.emplace_back(error);
   };
   std::set<std::size_t> bad_scenes;
   Counts counts;
@@ -321,7 +321,7 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
     const auto rows = static_cast<std::int64_t>(cut.count(block));
     if (!cut.scene_of_edge && bad_scenes.count(cut.sceneOf(block))) continue;
     bool is_new = false;
-    // What keeps this block from being computed is reported, and the others are computed all the same.
+    // If this block can't be computed, the reason is reported, and the others are computed all the same.
     try {
       if (const std::optional<Block> finished = folder->readBlock(block)) {
         counts.add(finished->counts);
@@ -331,11 +331,11 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
         counts.add(answerer.rows());
       }
     } catch (const SceneError& error) {
-      tell(error.what());
+      noteError(error.what());
       if (!cut.scene_of_edge) bad_scenes.insert(cut.sceneOf(block));
       continue;
     } catch (const std::runtime_error& error) {
-      tell(error.what());
+      noteError(error.what());
       continue;
     }
     if (is_new) {
@@ -394,7 +394,7 @@ int certifyEdges(const WorldOptions& world, EdgesOptions& o) {
     error = thrown.what();
     if (ranks->rank() == 0) fmt::print(stderr, "fcl_artic: error: {}\n", error);
   }
-  // All ranks meet here, whatever became of each: who is away would be waited for for ever.
+  // All ranks meet here, whatever became of each: if one stayed away, the others would wait for ever.
   constexpr int kDone = 0, kFailedInPart = 1, kFailed = 2;
   int first = kDone;
   const int worst = ranks->finish(outcome.blocks_failed           ? kFailed

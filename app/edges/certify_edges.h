@@ -25,8 +25,7 @@ struct EdgesOptions {
   int threads = 0;  ///< 0: as many as the machine runs at once; in ranks of an MPI job one
 };
 
-/// Computes the blocks that are not there yet, its share of them; once all are there, merges them, unless it is a
-/// shard.
+/// Computes its share of the blocks that are missing. Once all are there, it merges them, unless it is a shard.
 /// @return the exit status: kExitFree when all is done, whatever the answers; kExitError when something could not be.
 /// @throws as what it calls, naming the file.
 int certifyEdges(const WorldOptions& world, EdgesOptions& options);

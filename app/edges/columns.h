@@ -16,7 +16,7 @@ namespace fcl_artic::app {
 /// Motions that are asked at once: memory does not grow with blocks.
 constexpr std::size_t kMotionsAtOnce = 4096;
 
-/// What a row of the table says. 0 is never an answer: what a disk or a program fills in says nothing.
+/// The answer in a row of the table. 0 is never one: bytes that a disk or a program fills in mean nothing.
 enum class RowStatus : std::int8_t {
   missing = 0,    ///< not computed
   free = 1,       ///< proven free
@@ -36,7 +36,7 @@ struct Columns {
   /// Bodies of the first contact: a link, and another link or an obstacle; -1: none. Links are numbered as the file's
   /// attribute `links` names them, obstacles those of --scene first, then the scene's own in its order.
   std::vector<std::int32_t> link, other_link, obstacle;
-  /// What `free` does not speak of: numbers of CertifiedResult::ignored_initial_contacts, of never_apart_pairs among
+  /// The pairs that `free` leaves out: numbers of CertifiedResult::ignored_initial_contacts, of never_apart_pairs among
   /// them, and of unproven_allowed_pairs.
   std::vector<std::int32_t> ignored_initial, never_apart, unproven_allowed;
   std::vector<std::int64_t> certificate;  ///< place of the row's record in the block's file of certificates; -1: none

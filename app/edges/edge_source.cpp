@@ -86,7 +86,7 @@ EdgeSource::EdgeSource(const KinematicTree& tree, const std::string& path, EdgeO
   hash_ = hashAll();
 }
 
-/// What each column of configurations stands for.
+/// Finds the variable that each column of configurations stands for.
 void EdgeSource::readColumns(const std::string& dataset) {
   const std::vector<std::size_t> shape = file_.shape(dataset);
   if (shape.size() != 2) {
@@ -179,7 +179,7 @@ Eigen::VectorXd EdgeSource::configuration(const double* row) const {
   return q;
 }
 
-/// What keeps a configuration from being one of the robot's; empty: nothing.
+/// The reason why a configuration is not one of the robot's; empty: it is one.
 std::string EdgeSource::faultOf(const Eigen::VectorXd& q) {
   for (Eigen::Index v = 0; v < q.size(); ++v) {
     if (!std::isfinite(q[v])) return fmt::format("joint '{}' is {}", tree_.variableName(static_cast<int>(v)), q[v]);

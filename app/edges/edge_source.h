@@ -52,13 +52,12 @@ class EdgeSource {
   std::vector<std::int64_t> scenes(std::size_t begin, std::size_t count) const;
   /// Motions of rows [begin, begin + count).
   void read(std::size_t begin, std::size_t count, EdgeRows& rows);
-  /// What was accepted in rows that were read, though beyond a limit.
+  /// Notes on values beyond a limit that were accepted in rows.
   std::vector<std::string> limitNotes() const { return limits_.notes(); }
 
  private:
   enum class Kind { ends, numbers, waypoints };
   using Table = std::vector<double>;
-  std::size_t requireTable(const std::string& dataset);
   void readColumns(const std::string& dataset);
   std::string hashAll() const;
   Eigen::VectorXd configuration(const double* row) const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What answers that are kept depend on, as a hash of what was read: joints, shapes, places. (Files may have come
-// through a pipe that nobody can read again, or name other files.)
+// A hash of all that answers depend on, as it was read: joints, shapes, places. A kept answer is used again only if the
+// hash is the same. (Files may have come through a pipe that nobody can read again, or name other files.)
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@ namespace fcl_artic::app {
 
 /// Number of the entries of doc/ERRATA.md: what an earlier library has proven may be wrong, so it is in the hashes. (A
 /// test counts them.)
-constexpr int kErrata = 87;
+constexpr int kErrata = 88;
 
-/// SHA-256 of the obstacles of a scene's file; where all that there is stands in the file itself, of the file.
+/// SHA-256 of the obstacles of a scene's file. If the file itself holds all of them, it is the file's.
 /// @param options  as loadScene() takes them.
 std::string sceneFileHash(const std::string& path, const SceneOptions& options);
 

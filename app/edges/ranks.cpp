@@ -48,7 +48,7 @@ std::unique_ptr<Ranks> shardOf(const std::string& text) {
   return std::make_unique<Shard>(i - 1, n);
 }
 
-/// What starts MPI's processes says so in their environment.
+/// A program that starts MPI's processes sets one of these in their environment.
 const char* startedByMpi() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "PMI_SIZE"}) {
     if (std::getenv(name)) return name;

@@ -267,7 +267,7 @@ Json RunFolder::merge(bool partial, Read what) const {
   const std::string bytes = table.bytes(), text = textOf(summary);
   files::writeTogether({{folder_ + "/table.h5", bytes}, {folder_ + "/summary.json", text}});
   if (missing.empty()) {
-    // What ranks that were killed have left behind.
+    // Files that killed ranks have left behind.
     for (const char* part : {"/blocks", "/certificates"}) {
       std::error_code none;
       for (const auto& entry : fs::directory_iterator(folder_ + part, none)) {

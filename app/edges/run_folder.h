@@ -55,12 +55,12 @@ enum class Read {
 
 class RunFolder {
  public:
-  /// Of a run that begins or goes on.
+  /// A run that begins or goes on.
   /// @param run  what it is about. Its hash marks each block.
   /// @throws std::invalid_argument naming what differs from the run that the folder is of; std::runtime_error naming
   ///   the file.
   RunFolder(std::string folder, const nlohmann::ordered_json& run);
-  /// Of a run that is there.
+  /// A run that is there.
   /// @throws std::runtime_error naming the file.
   explicit RunFolder(std::string folder);
 
@@ -81,8 +81,8 @@ class RunFolder {
 
   /// Writes the table of all blocks (table.h5, a virtual one) and summary.json; both name the hash of all rows.
   /// @param partial  blocks that are missing are no error: their rows say so.
-  /// @param what     Read::summary for who has written all blocks or read their rows: the time that one process takes
-  ///   here is time that all ranks wait.
+  /// @param what     Read::summary if the caller has written all blocks or read their rows: all ranks wait while one
+  ///   process is here.
   /// @return the summary.
   /// @throws std::runtime_error naming blocks that are missing or damaged.
   nlohmann::ordered_json merge(bool partial, Read what = Read::rows) const;

@@ -29,7 +29,7 @@ std::string endingOf(const std::string& path) {
   return ending;
 }
 
-/// Of a folder, what beside it may lie there (materials, pictures, notes) is no scene.
+/// Other files in a folder (materials, pictures, notes) are no scenes.
 bool hasSceneEnding(const std::string& path) {
   const std::string ending = endingOf(path);
   for (const char* known : {".urdf", ".scene", ".bt", ".ot", ".pcd", ".xyz", ".ply", ".obj", ".stl", ".dae", ".off",

@@ -13,9 +13,9 @@
 
 namespace fcl_artic::app {
 
-/// A scene of an HDF5 file: `first` has for each scene, and once more at its end, the number of its first obstacle; of
-/// obstacles there are `kind`, `size` (three columns), `position` (three) and, unless all stand upright, `orientation`
-/// (x, y, z, w).
+/// A scene of an HDF5 file: `first` has for each scene the number of its first obstacle, and once more at its end the
+/// number of all. Obstacles have `kind`, `size` (three columns), `position` (three) and, unless all stand upright,
+/// `orientation` (x, y, z, w).
 enum class ShapeKind : std::int8_t {
   box = 0,       ///< size: full lengths along x, y, z
   sphere = 1,    ///< size: radius
@@ -36,7 +36,7 @@ class SceneSource {
   const std::string& name(std::size_t scene) const { return scenes_[scene].name; }
   /// SHA-256 of all files that scenes are made of.
   const std::string& hash() const { return hash_; }
-  /// Of each folder, what in it was passed over, one line.
+  /// A line for each folder: the files in it that were passed over.
   const std::vector<std::string>& notes() const { return notes_; }
   /// @throws as loadScene(), naming the file, and of an HDF5 file the scene and its obstacle.
   Scene load(std::size_t scene) const;

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "angles.h"
+#include "kinematics/angles.h"
 #include "renderer.h"
 #include "text.h"
 #include "triangles.h"
@@ -36,7 +36,7 @@ constexpr unsigned kObstacleColors[] = {0xD3CCBF, 0xC6BFB2, 0xDAD5CB, 0xBDB8AE};
 constexpr unsigned kTouchingLink = 0xE4572E, kTouchingObstacle = 0xF2A93B, kMarker = 0xC1121F;
 constexpr unsigned kGhostBefore = 0x4A90D9, kGhostAfter = 0xA8A29A, kTrace = 0xE4572E;
 
-/// What is drawn of the robot at any pose.
+/// Links as they are drawn at any pose.
 struct LinkPart {
   LinkId link;
   Isometry3d offset;
@@ -89,9 +89,9 @@ Camera frame(const std::vector<Vector3d>& points, const Ball& ball, const Vector
   const double tan_y = std::tan(kFieldOfView / 2) / kAir, tan_x = tan_y * aspect, tan_up = kTitle * tan_y;
   const Vector3d up = std::abs(direction.z()) > 0.9999 ? Vector3d::UnitY() : Vector3d::UnitZ();
   const Vector3d x = up.cross(direction).normalized(), y = direction.cross(x);
-  // A point at (px, py, pz) along x, y, direction is in view from (cx, cy, cz) when px - cx and cx - px are at most
-  // (cz - pz) tan_x, that is cx >= px + pz tan_x - cz tan_x and cx <= px - pz tan_x + cz tan_x: the extremes over the
-  // points give the least cz, and cx in the middle of what is left. Likewise y.
+  // A point at (px, py, pz) along x, y, direction is in view from (cx, cy, cz) when px - cx and cx - px are at most (cz
+  // - pz) tan_x. That is cx >= px + pz tan_x - cz tan_x and cx <= px - pz tan_x + cz tan_x. The extremes over the
+  // points give the least cz, and cx in the middle of the values that are left. Likewise y.
   double high_x = -1e300, low_x = 1e300, high_y = -1e300, low_y = 1e300;
   for (const Vector3d& p : points) {
     const double px = p.dot(x), py = p.dot(y), pz = p.dot(direction);
@@ -221,7 +221,7 @@ class Composer {
         const double clutter = static_cast<double>(seen[kSceneGroup]) / (width * kHeight);
         double score = share(kRobotGroup) - 0.5 * clutter + 0.02 * std::cos((azimuth + 55) * kPi / 180);
         if (const CertifiedContact* c = contact()) {
-          // Of the contact what counts is not hidden by anything, the robot included.
+          // The share of the contact that nothing hides, the robot included.
           const double full =
               kPi * std::pow(0.035 * ball_.radius / ((camera.eye - c->point).norm() * std::tan(kFieldOfView / 2)) *
                                  kHeight / 2,
@@ -316,7 +316,7 @@ class Composer {
     }
   }
 
-  /// Poses along the motion; only what is elsewhere than at t_lower.
+  /// Adds poses along the motion, but only of bodies that are elsewhere than at t_lower.
   void addGhosts() {
     const double t = result_.t_lower;
     const bool stopped = result_.status != Status::free;

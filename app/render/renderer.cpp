@@ -171,7 +171,7 @@ Matrix4f orthographic(double half_width, double near, double far) {
   return m;
 }
 
-/// Direction to the sun: high, over the viewer's right shoulder, so that what is seen is lit.
+/// Direction to the sun: high, over the viewer's right shoulder, so that visible sides are lit.
 Vector3d sunFor(const Camera& camera) {
   const Vector3d back = camera.eye - camera.target;
   const Vector3d level = std::hypot(back.x(), back.y()) > 1e-6 * std::abs(back.z())
@@ -197,7 +197,8 @@ struct Part {
   int x = 0, y = 0, width, height;
 };
 
-/// Where bodies are in a view, and `around` pixels beyond; all of the view where one reaches behind the eye.
+/// The part of a view in which bodies are, and `around` pixels beyond. If a body reaches behind the eye, all of the
+/// view.
 Part partOf(const std::vector<Body>& bodies, const Matrix4f& view_projection, int width, int height, int around) {
   Eigen::AlignedBox2f box;
   for (const Body& body : bodies) {

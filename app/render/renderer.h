@@ -46,7 +46,7 @@ struct Camera {
 /// Full angle of view from bottom to top, rad.
 constexpr double kFieldOfView = 0.56;
 
-/// What there is to see, world frame with z up.
+/// The bodies to draw, world frame with z up.
 struct Stage {
   std::vector<Body> solid;
   std::vector<Ghost> ghosts;                        ///< first one lies lowest

@@ -17,8 +17,8 @@
 #include <fcl/geometry/shape/plane.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/geometry/shape/triangle_p.h>
-#include "angles.h"
 #include "fcl_artic/point_cloud.h"
+#include "kinematics/angles.h"
 #if FCL_HAVE_OCTOMAP
 #include <fcl/geometry/octree/octree.h>
 #endif
@@ -59,7 +59,7 @@ void addBox(Triangles& out, const Vector3d& center, const Vector3d& size) {
   }
 }
 
-/// Of each point as much as a few pixels show.
+/// Each point as an octahedron, as much as a few pixels show.
 Triangles octahedra(const PointCloud& cloud) {
   Triangles out;
   for (std::size_t i = 0; i < cloud.points().size(); ++i) {

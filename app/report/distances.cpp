@@ -12,7 +12,7 @@ namespace fcl_artic::app {
 namespace {
 
 constexpr int kSteps = 100;
-// A curve is to be seen, not to be decided by; and a page is not to take minutes.
+// A curve is for the eye and decides nothing, and a page must not take minutes.
 constexpr double kToleranceRelative = 0.05;
 constexpr double kTolerancePart = 1e-3;  // of `most`
 constexpr std::uint64_t kWorkForStep = 4000000;
@@ -52,7 +52,7 @@ std::vector<Stretch> stretchesOf(const std::vector<double>& times) {
   return out;
 }
 
-/// What holds over two stretches, of what holds over each.
+/// Joins what holds over one stretch with what holds over another.
 void join(const Clearance& more, Clearance& all) {
   all.lower = std::min(all.lower, more.lower);
   if (more.upper < all.upper) {

@@ -12,7 +12,7 @@
 
 namespace fcl_artic::app {
 
-/// What moves the robot: over [0, 1], or in a trajectory's own time.
+/// The robot's motion: over [0, 1], or in a trajectory's own time.
 using RobotMotion = std::variant<JointMotion, JointTrajectory>;
 
 /// Where a motion's time begins and ends.

@@ -30,9 +30,9 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
-// What a browser draws fluently, and what a page of some ten megabytes holds.
-constexpr std::size_t kMostTriangles = 1000000, kMostBalls = 500000;
-constexpr std::size_t kFewestPoses = 360, kMostPoses = 3000, kPosesForPiece = 4;
+// As much as a browser draws fluently, and as a page of some ten megabytes holds.
+constexpr std::size_t kMaxTriangles = 1000000, kMaxBalls = 500000;
+constexpr std::size_t kFewestPoses = 360, kMaxPoses = 3000, kPosesForPiece = 4;
 
 std::string base64(const void* data, std::size_t size) {
   static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -47,7 +47,7 @@ std::string base64(const void* data, std::size_t size) {
   return out;
 }
 
-/// Numbers as the page's script takes them: little-endian, which all processors are that this library knows.
+/// Numbers as the page's script takes them: little-endian, as are all processors that this library supports.
 template <class Number>
 std::string base64(const std::vector<Number>& numbers) {
   return base64(numbers.data(), numbers.size() * sizeof(Number));
@@ -70,7 +70,7 @@ struct Shape {
   Vector3d center = Vector3d::Zero();
 };
 
-/// How many of a kind there are to be drawn in all, and so which part of them is.
+/// Counts how many of a kind there are in all, and so says which part of them is drawn.
 class Thinning {
  public:
   explicit Thinning(std::size_t most) : most_(most) {}
@@ -189,13 +189,13 @@ class Shapes {
     Vector3d center = Vector3d::Zero();
   };
   std::map<const fcl::CollisionGeometryd*, Content> content_;
-  Thinning triangles_{kMostTriangles}, balls_{kMostBalls};
+  Thinning triangles_{kMaxTriangles}, balls_{kMaxBalls};
   Json json_ = Json::array();
 };
 
 /// Times of the poses on the page: evenly over the motion, and the ends of brackets.
 std::vector<double> timesOfPoses(const Report& report) {
-  const std::size_t count = std::clamp(kPosesForPiece * report.pieces, kFewestPoses, kMostPoses);
+  const std::size_t count = std::clamp(kPosesForPiece * report.pieces, kFewestPoses, kMaxPoses);
   std::set<double> times{report.begin, report.end};
   for (std::size_t i = 1; i < count; ++i) {
     times.insert(report.begin + (report.end - report.begin) * static_cast<double>(i) / static_cast<double>(count));
@@ -233,7 +233,7 @@ Json distancesJson(const Distances& distances) {
     return std::any_of(distances.steps.begin(), distances.steps.end(),
                        [&](const DistanceStep& s) { return (s.*which).statistics.pairs > 0; });
   };
-  // Each step is a part of one piece, which knows each pair once; a query that guesses a contact first looks at none.
+  // Each step is a part of one piece, which has each pair once. A query that guesses a contact first looks at no pair.
   std::uint64_t pairs = 0;
   for (const DistanceStep& step : distances.steps)
     pairs = std::max(pairs, step.obstacles.statistics.pairs + step.links.statistics.pairs);
@@ -243,7 +243,7 @@ Json distancesJson(const Distances& distances) {
   return out;
 }
 
-/// What moves, and what it looks like: for the page's script.
+/// The bodies, their motions and their looks, for the page's script.
 Json motionJson(const Report& report, const std::vector<PageBody>& bodies, const Distances& distances) {
   const KinematicTree& tree = report.tree;
   const std::vector<double> times = timesOfPoses(report);

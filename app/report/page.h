@@ -34,9 +34,9 @@ std::vector<PageBody> linksOf(const KinematicTree& tree, const std::vector<LinkG
 /// above 0.
 double sizeOf(const Report& report, const std::vector<PageBody>& bodies);
 
-/// The page, whole in itself: it loads nothing, and says by a content security policy that it may not. What is drawn is
-/// thinned where there are more than a million triangles, or of an OctoMap's cells and a cloud's points half a million,
-/// which the page says.
+/// The page, whole in itself: it loads nothing, and says by a content security policy that it may not. If there are
+/// more than a million triangles, or half a million cells of an OctoMap or points of a cloud, the drawing is thinned,
+/// and the page says so.
 /// @param report  what it says of the answer.
 /// @param distances  what its curve shows.
 /// @throws std::invalid_argument for a kind of geometry that can't be drawn.

@@ -6,9 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "angles.h"
+#include "kinematics/angles.h"
 #include "request_json.h"
 #include "stage2.h"
+#include "text/counted.h"
 #include "text/one_line.h"
 
 namespace fcl_artic::app {
@@ -16,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What a link carries has a name that is not its own; no obstacle or attached object has that of a link.
+/// A body that a link carries has a name other than the link's; no obstacle or attached object has the name of a link.
 bool isAttached(const KinematicTree& tree, const BodyRef& body) {
   return body.link >= 0 && body.name != tree.linkName(body.link);
 }
@@ -105,9 +106,11 @@ std::string clearanceText(const KinematicTree& tree, const Clearance& c) {
 
 std::string statisticsText(const QueryStatistics& s) {
   return fmt::format(
-      "{} pairs, {} left by the swept bounds; {} node tests, {} leaf tests, {} certificates, {} witness searches, {} "
-      "contact proofs; {:.3f} ms (culling {:.3f}, narrow phase {:.3f}, report {:.3f})",
-      s.pairs, s.pairs_after_culling, s.node_tests, s.leaf_tests, s.certificates, s.gjk, s.contact_proofs,
+      "{}, {} left by the swept bounds; {}, {}, {}, {}, {}; {:.3f} ms (culling {:.3f}, narrow phase {:.3f}, report "
+      "{:.3f})",
+      text::counted(s.pairs, "pair"), s.pairs_after_culling, text::counted(s.node_tests, "node test"),
+      text::counted(s.leaf_tests, "leaf test"), text::counted(s.certificates, "certificate"),
+      text::counted(s.gjk, "witness search", "witness searches"), text::counted(s.contact_proofs, "contact proof"),
       s.total_us * 1e-3, s.culling_us * 1e-3, s.narrowphase_us * 1e-3, s.report_us * 1e-3);
 }
 
@@ -200,7 +203,7 @@ Json posesJson(const Report& r) {
 }  // namespace
 
 std::string placeText(const Eigen::Vector3d& place, int digits) {
-  // What the rounding of sines and cosines, some 1e-16 each, leaves of a coordinate that is 0.
+  // The rounding of sines and cosines, some 1e-16 each, leaves this much of a coordinate that is 0.
   const double noise = 1e-15 * std::max(1.0, place.cwiseAbs().maxCoeff());
   const auto text = [&](double x) { return fmt::format("{:.{}g}", std::abs(x) <= noise ? 0.0 : x, digits); };
   return fmt::format("({}, {}, {})", text(place.x()), text(place.y()), text(place.z()));

@@ -29,7 +29,7 @@ struct Report {
   bool request_known = true;
 };
 
-/// "(0.5, -0.25, 0)": a place, m, in so many digits. No coordinate is "-0", or what rounding leaves of 0.
+/// "(0.5, -0.25, 0)": a place, m, in so many digits. No coordinate is "-0", or a 0 that rounding has changed.
 std::string placeText(const Eigen::Vector3d& place, int digits = 6);
 /// The same of a direction: a vector of length 1, with so many decimals.
 std::string directionText(const Eigen::Vector3d& direction, int decimals = 6);
@@ -37,7 +37,7 @@ std::string directionText(const Eigen::Vector3d& direction, int decimals = 6);
 /// The verdict in one sentence.
 std::string headline(const Report& report);
 
-/// What of all pairs a request does not ask about; empty: nothing.
+/// The pairs that a request leaves out; empty: none.
 std::string scopeText(const CertifiedRequest& request);
 
 /// The answer for a reader.
@@ -45,7 +45,7 @@ std::string textReport(const Report& report);
 
 /// The answer for a program, with the keys of fcl_artic(1). Numbers keep all their digits.
 nlohmann::ordered_json jsonReport(const Report& report);
-/// The keys that say what `free` does not speak of: no short form of the answer leaves them out.
+/// The keys for pairs that `free` leaves out: no short form of the answer leaves them out.
 constexpr const char* kExceptions[] = {"ignored_initial_contacts", "never_apart_pairs", "unproven_allowed_pairs",
                                        "unproven_neighbours"};
 

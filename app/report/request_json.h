@@ -7,7 +7,7 @@
 
 namespace fcl_artic::app {
 
-/// What was asked, by the names of the options (query/request_options.h) in their order.
+/// The request, by the names of the options (query/request_options.h) in their order.
 nlohmann::ordered_json requestJson(const CertifiedRequest& request);
 
 }  // namespace fcl_artic::app

@@ -19,7 +19,7 @@ namespace fcl_artic::app {
 const std::vector<std::pair<std::string, VisibilityMode>>& visibilityModes();
 /// The name of a mode.
 std::string nameOf(VisibilityMode mode);
-/// What stage 2 did, in JSON: whether it was used, by which executor, its work; null where it was off.
+/// The work of stage 2 in JSON: whether it was used, by which executor, its counts; null if it was off.
 nlohmann::ordered_json visibilityJson(VisibilityMode mode, const QueryStatistics& statistics);
 /// The same for a reader, in a line without an end.
 std::string visibilityText(const QueryStatistics& statistics);

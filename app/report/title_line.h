@@ -8,7 +8,7 @@
 
 namespace fcl_artic::app {
 
-/// The answer in one line, the title of pages and pictures: the two sides and the time, or what is proven.
+/// The answer in one line, the title of pages and pictures: the two bodies and the time, or the proof.
 inline std::string titleLine(const CertifiedResult& result) {
   if (result.nothingChecked()) return "nothing was checked";
   if (result.status == Status::free) {

@@ -113,7 +113,7 @@ std::string verticesCsv(const Roadmap& roadmap) {
   return out;
 }
 
-/// Of what `self_margin` is said of.
+/// A hash of the roadmap's edges, for which `self_margin` holds.
 std::string edgesHash(const std::vector<double>& configurations, const std::vector<std::int64_t>& edges) {
   const auto hashOf = [](const auto& values) {
     return certificate::sha256Text({reinterpret_cast<const char*>(values.data()), values.size() * sizeof values[0]});

@@ -41,8 +41,8 @@ struct RoadmapOptions {
   int threads = 0;
 };
 
-/// Draws configurations within the joints' limits (those that turn forever within ±pi) that are proven free, joins each
-/// with its nearest ones, and leaves out edges that are not proven free.
+/// Draws configurations that are proven free, within the joints' limits, or within ±pi for joints that turn forever.
+/// Joins each with its nearest ones, and leaves out edges that are not proven free.
 /// @param manager  of the robot, and of what always stands around it.
 /// @param request  must not ignore contact at the start: a vertex is to be free, and edges are gone along both ways.
 /// @param[out] tried  edges that were asked.

@@ -9,9 +9,9 @@
 
 #include <Eigen/Core>
 
-/// Makes the data that comes with the project: a PUMA 560 and scenes of pipes. The output is the same on every
-/// machine: own random numbers, tables rounded far above the differences between mathematical libraries, and
-/// coordinates on a grid of 10 µm, so that an OBJ file holds exactly the doubles of the mesh.
+/// Makes the data that comes with the project: a PUMA 560 and scenes of pipes. The output is the same on every machine.
+/// The random numbers are the project's own. Tables are rounded far above the differences between mathematical
+/// libraries. Coordinates are on a grid of 10 µm, so that an OBJ file holds exactly the doubles of the mesh.
 namespace fcl_artic::generator {
 
 /// Closed triangle surfaces, outside seen counter-clockwise; m. Parts may overlap.

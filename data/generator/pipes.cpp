@@ -152,7 +152,7 @@ class Pen {
     addLoft(mesh_, rings_);
     rings_.clear();
   }
-  /// What was drawn since the last call.
+  /// The mesh that was drawn since the last call.
   Mesh take() { return std::exchange(mesh_, {}); }
 
  private:
@@ -221,7 +221,7 @@ std::vector<Mesh> separatePipes(std::size_t triangles, std::uint64_t seed) {
       cell += pen.direction();
       grid.take(cell);
       ways = waysOut(grid, cell);
-      // What is left is spent where the last pipe ends, always more than nothing.
+      // The remaining rings, always more than none, are spent where the last pipe ends.
       const bool last = pen.ringsLeft() <= pen.ringsOfAStep() + 3;
       if (last || cells == 0 || ways.empty()) {
         pen.straight(kCell / 2, last ? pen.ringsLeft() : 1);

@@ -2,10 +2,10 @@
 // Unimation PUMA 560: kinematics as published, bodies of our own that follow its look and main dimensions.
 //
 // Standard Denavit-Hartenberg parameters, A_i = Rz(q_i) Tz(d_i) Tx(a_i) Rx(alpha_i), of Corke and Armstrong-Helouvry,
-// "A search for consensus among model parameters reported for the PUMA 560 robot" (ICRA 1994); ranges of the joints
-// as in Fu, Gonzalez, Lee, "Robotics" (1987), in Corke's zero position: upper arm level, forearm upright.
-// A URDF link's frame turns with its joint, so link i's frame is DH frame i - 1 turned by q_i, and the origin of joint
-// i + 1 is Tz(d_i) Tx(a_i) Rx(alpha_i).
+// "A search for consensus among model parameters reported for the PUMA 560 robot" (ICRA 1994). Ranges of the joints as
+// in Fu, Gonzalez, Lee, "Robotics" (1987), in Corke's zero position: upper arm level, forearm upright. A URDF link's
+// frame turns with its joint, so link i's frame is DH frame i - 1 turned by q_i, and the origin of joint i + 1 is
+// Tz(d_i) Tx(a_i) Rx(alpha_i).
 #include <filesystem>
 #include <stdexcept>
 

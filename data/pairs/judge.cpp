@@ -11,7 +11,7 @@ namespace pairs {
 namespace {
 
 double relativeSpeed(const PairQuery& q) {
-  // Of an unbounded body only what is near the other one counts.
+  // If a body is unbounded, only its part near the other body counts.
   const double between = q.path1->extent() + q.path2->extent();
   const double reach1 = q.body1->unbounded() ? between + q.body2->reach : q.body1->reach;
   const double reach2 = q.body2->unbounded() ? between + q.body1->reach : q.body2->reach;

@@ -29,8 +29,8 @@ struct Nearness {
   Vec3 direction = Vec3::Zero();  ///< unit, from 1 to 2
 };
 
-/// What counts as a clear contact, in m: a ball of this radius fits into the bodies' Minkowski difference about the
-/// origin. Poses of bodies of a metre within some metres carry errors of 1e-15 m in doubles.
+/// A contact is clear if a ball of this radius, in m, fits into the bodies' Minkowski difference about the origin.
+/// Poses of bodies of a metre within some metres carry errors of 1e-15 m in doubles.
 constexpr double kClear = 1e-12;
 
 /// @param wanted  share of the distance to which the bounds are wanted
@@ -42,7 +42,7 @@ double distanceTo(const Body& body, int piece, const Pose& M, const Vec3& point)
 double gapAlong(const Body& a, int piece_a, const Pose& M_a, const Body& b, int piece_b, const Pose& M_b,
                 const Vec3& n);
 
-/// What sampling found out.
+/// The findings of sampling.
 struct Truth {
   /// A sampled time has a clear contact; `time` is the first one found, bisected down to neighbouring doubles or
   /// nearly. The true first contact lies at or before it.
@@ -53,9 +53,9 @@ struct Truth {
   Vec3 direction = Vec3::Zero();  ///< there, unit, from 1 to 2
 };
 
-/// Samples a query as often as distance and speed ask for, never more coarsely; at least 32 and, near contact, up to
-/// 2,048 times, and closes in on every minimum of the distance that may hide a contact. Contacts are found, never
-/// proven absent: an oracle in one direction. It shares nothing with the library but FCL's types.
+/// Samples a query as often as distance and speed ask for: at least 32 times and, near contact, up to 2,048 times.
+/// Closes in on every minimum of the distance that may hide a contact. Contacts are found, never proven absent: an
+/// oracle in one direction. It shares nothing with the library but FCL's types.
 class Judge {
  public:
   using Look = std::function<Nearness(const Pose& M_1, const Pose& M_2, double wanted, const Nearness& hint)>;

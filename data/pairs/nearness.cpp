@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Distances by the algorithm of Gilbert, Johnson and Keerthi: in doubles where the bodies are apart, in long doubles
-// where they may touch. What it claims is shown by a direction or by points, never by its having stopped.
+// where they may touch. A direction or points show each claim, never the fact that the algorithm has stopped.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -195,8 +195,8 @@ Distance<R> distance(const Placed<R>& A, const Placed<R>& B, const Vec<R>& p, do
   return r;
 }
 
-/// Shows that the difference of two bodies without radii holds a ball of radius 0.9 depth about the origin: it has
-/// points within depth / 10 of the four corners of a regular tetrahedron of inradius depth.
+/// Shows that the difference of two bodies without radii holds a ball of radius 0.9 depth about the origin. For this it
+/// has points within depth / 10 of the four corners of a regular tetrahedron of inradius depth.
 bool holdsBall(const Placed<Real>& A, const Placed<Real>& B, Real depth) {
   const Real q = 3 * depth / std::sqrt(Real(3));
   for (const Vec<Real>& corner :
@@ -287,7 +287,7 @@ Nearness nearness(const Body& a, const Pose& M_a, const Body& b, const Pose& M_b
   visit(std::min(hint.piece1, a.numPieces() - 1), std::min(hint.piece2, b.numPieces() - 1));
   if (a.nodes.empty() && b.nodes.empty()) return best;
 
-  // Of a mesh the tree, of a shape one box around all of it.
+  // For a mesh the tree, for a shape one box around all of it.
   const Body::Node whole_a{Vec3::Zero(), Vec3::Constant(a.reach), -1, 0},
       whole_b{Vec3::Zero(), Vec3::Constant(b.reach), -1, 0};
   const auto node = [](const Body& body, const Body::Node& whole, int k) -> const Body::Node& {

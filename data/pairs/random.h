@@ -40,7 +40,7 @@ class Random {
       if (square > 1e-4 && square <= 1) return v / std::sqrt(square);
     }
   }
-  /// Of a length between the two, in any direction. (One draw after the other: operands have no order.)
+  /// A vector of a length between the two, in any direction. (One draw after the other: operands have no order.)
   Eigen::Vector3d vector(double least, double most) {
     const double length = uniform(least, most);
     return length * direction();

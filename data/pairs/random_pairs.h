@@ -15,7 +15,7 @@ struct PairOptions {
   /// Where a query is clear, the second body's whole motion is moved so that the least gap, or the depth, is of 1e-8 to
   /// 1e-3 m.
   bool graze = false;
-  /// Of meshes; both the same, as FCL compares no others. Any: each one its own.
+  /// Bounding volume of the meshes; both the same, as FCL compares no others. Any: each one its own.
   Volume volume = Volume::rss;
   bool any_volume = false;
   /// Half-spaces and planes are among the shapes, at most one a query.

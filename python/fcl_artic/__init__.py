@@ -13,7 +13,7 @@ does::
         ...
 
 Lengths are in metres, angles in radians, poses are 4x4 matrices (or a position of three numbers), time runs from 0 to
-1 or is a trajectory's own. What cannot be proven is never called free.
+1 or is a trajectory's own. A motion that cannot be proven free is never called free.
 """
 from ._enums import (
     ContactMode,
@@ -82,6 +82,7 @@ from ._fcl_artic import (
     points,
     plane,
     read_srdf,
+    replay,
     sphere,
     tool_deviation,
     triangle,
@@ -175,6 +176,7 @@ __all__ = [
     "plane",
     "pose",
     "read_srdf",
+    "replay",
     "sphere",
     "tool_deviation",
     "triangle",

@@ -97,7 +97,7 @@ class JointType(enum.Enum):
 
 
 class LinkPairKind(enum.Enum):
-    """What two links do over all values of their joints."""
+    """Whether two links touch, over all values of their joints."""
 
     NEVER = "never"
     """Proven apart for all values within the joints' limits."""

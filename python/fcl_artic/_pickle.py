@@ -8,5 +8,5 @@ from . import _fcl_artic as _ext
 
 
 def made(owner: Any, maker: str, arguments: tuple[Any, ...]) -> Any:
-    """What the owner's member `maker`, or without an owner the function of that name, makes of the arguments."""
+    """The object that the owner's member `maker` makes of the arguments; without an owner, the module's function does."""
     return getattr(_ext if owner is None else owner, maker)(*arguments)

@@ -46,7 +46,7 @@ Doubles doubles(py::handle value, const char* what) {
     if (isAligned(array)) return array;
   }
   const py::array array = numbers(value, what, "fiu");
-  // Of an array of another type, order or alignment NumPy makes a copy that has them.
+  // If an array has another type, order or alignment, NumPy makes a copy that has these.
   return py::module_::import("numpy").attr("require")(array, py::dtype::of<double>(), py::make_tuple("C", "A"));
 }
 

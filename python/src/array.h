@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// NumPy arrays to and from Eigen. A C-contiguous array of float64 is read where it lies; what else holds numbers is
-// converted first. Whatever holds none (text, None, truth values, complex numbers, masked entries) is refused: nothing
-// is converted in silence into other numbers.
+// NumPy arrays to and from Eigen. A C-contiguous array of float64 is read where it lies; other values that hold numbers
+// are converted first. Values that hold none (text, None, truth values, complex numbers, masked entries) are refused:
+// nothing is converted in silence into other numbers.
 #pragma once
 
 #include <pybind11/numpy.h>

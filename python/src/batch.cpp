@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Many motions at once: rows of two arrays, read where they lie, and answers written into arrays. Each row is read once
-// and copied into its motion, so that an answer is about the numbers that were read, whatever becomes of the array.
+// and copied into its motion. So an answer is about the numbers that were read, whatever becomes of the array.
 #include <pybind11/stl.h>
 
 #include <atomic>
@@ -49,7 +49,7 @@ struct Columns {
   std::int32_t *pair, *ignored_initial, *never_apart, *unproven_allowed;
 };
 
-/// Answers that claim nothing: what a query that was ended leaves out.
+/// Answers that claim nothing: those of motions that an ended query has left out.
 Answers claimNothing(py::ssize_t n) {
   Answers a{Statuses(n),
             Doubles(n),

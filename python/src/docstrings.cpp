@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What properties hold: their docstrings, which the manual's reference shows. Those of functions stand where they are
+// Docstrings of properties, which the manual's reference shows. Docstrings of functions stand where the functions are
 // bound.
 #include "docstrings.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Errors as Python has them. What the library throws arrives so: std::invalid_argument as ValueError, and what a file
-// is to blame for as FileNotFoundError or ValueError (guardFiles()).
+// Errors as Python has them. The library's std::invalid_argument arrives as ValueError. An error that a file is to
+// blame for arrives as FileNotFoundError or ValueError (guardFiles()).
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -16,7 +16,7 @@ namespace fcl_artic::python {
 
 namespace py = pybind11;
 
-/// A text of the library's for Python, whatever bytes of files it holds: those that are no UTF-8 as \\xHH.
+/// A text of the library's for Python. It may hold bytes of files: those that are no UTF-8 become \\xHH.
 inline py::str textOf(const std::string& text) {
   return py::reinterpret_steal<py::str>(
       PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "backslashreplace"));
@@ -42,7 +42,7 @@ inline py::list textsOf(const std::vector<std::string>& texts) {
   throw py::error_already_set();
 }
 
-/// A UserWarning of each note, where no object keeps them.
+/// Raises a UserWarning for each note that no object keeps.
 inline void warn(const std::vector<std::string>& notes) {
   for (const std::string& note : notes) {
     if (PyErr_WarnFormat(PyExc_UserWarning, 1, "%U", textOf(note).ptr()) != 0) throw py::error_already_set();

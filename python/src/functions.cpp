@@ -20,20 +20,21 @@ constexpr struct {
 #include "signatures.inc"
 };
 
-/// What runs any of pybind11's functions, which it knows by the first argument.
-using Run = PyObject* (*)(PyObject*, PyObject*, PyObject*);
-Run pybind_run = nullptr;
+/// The function of pybind11 that runs any of its functions, which it knows by the first argument.
+using CallFunction = PyObject* (*)(PyObject*, PyObject*, PyObject*);
+CallFunction pybind_run = nullptr;
 
 struct Function {
   std::string name, lines;  ///< of the stub; no lines: it is none of the stub's
 };
-/// By what pybind_run() knows a function by. Never destroyed: Python calls functions until the process ends.
+/// The functions, by the object by which pybind_run() knows each. Never destroyed: Python calls functions until the
+/// process ends.
 std::unordered_map<PyObject*, Function>& functions() {
   static auto* const all = new std::unordered_map<PyObject*, Function>;
   return *all;
 }
 
-/// Replaces what pybind11 says of arguments that a function does not take, with names of types in C++.
+/// Replaces pybind11's message about arguments that a function does not take: it has names of types in C++.
 void explain(const Function& of) {
   py::error_already_set error;
   const std::string text = py::str(error.value()), invoked = "\nInvoked with: ";
@@ -63,11 +64,11 @@ PyObject* run(PyObject* self, PyObject* arguments, PyObject* options) {
   return result;
 }
 
-PyCFunction asMethod(Run function) {
+PyCFunction asMethod(CallFunction function) {
   return reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(function));
 }
 
-/// The function that pybind11 has made, without what binds it to a class; null for anything else.
+/// The function that pybind11 has made, without its binding to a class; null for anything else.
 PyCFunctionObject* functionIn(py::handle value) {
   PyObject* function = value.ptr();
   if (Py_TYPE(function) == &PyStaticMethod_Type) function = value.attr("__func__").ptr();  // which it holds
@@ -143,7 +144,7 @@ void completeAll(py::handle owner, const std::string& prefix) {
 
 void completeFunctions(const py::module_& module) {
   const py::cpp_function any([] {});
-  pybind_run = reinterpret_cast<Run>(
+  pybind_run = reinterpret_cast<CallFunction>(
       reinterpret_cast<void (*)()>(reinterpret_cast<PyCFunctionObject*>(any.ptr())->m_ml->ml_meth));
   completeAll(module, "");
 }

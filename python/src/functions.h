@@ -7,7 +7,7 @@ namespace fcl_artic::python {
 
 namespace py = pybind11;
 
-/// Gives all functions of the module, those of its classes and properties too, what they have in common. Each call is a
+/// Gives all functions of the module, those of its classes and properties too, their common behaviour. Each call is a
 /// Call. Their docstrings begin with their signatures in the stub (signatures.py), and the TypeError for arguments that
 /// a function does not take ends with it. To be called once all are there.
 void completeFunctions(const py::module_& module);

@@ -22,6 +22,7 @@
 #include "fcl_artic/solid_mesh.h"
 #include "hull.h"
 #include "options.h"
+#include "text/counted.h"
 
 namespace fcl_artic::python {
 namespace {
@@ -129,7 +130,7 @@ Geometry mesh(py::handle vertices, py::handle faces, bool solid) {
 Geometry convex(py::handle vertices, py::handle faces) {
   const auto points = std::make_shared<std::vector<Vector3d>>(pointsOf(vertices, "vertices"));
   if (points->empty()) valueError("vertices has no row");
-  // What queries take is the hull of the vertices; the faces are for pictures, and for FCL's own queries.
+  // Queries take the hull of the vertices; the faces are for pictures, and for FCL's own queries.
   const Faces triangles = faces.is_none() ? hullFaces(*points) : facesOf(faces, points->size());
   const auto code = std::make_shared<std::vector<int>>();
   for (const auto& f : triangles) {
@@ -147,7 +148,7 @@ Geometry octree(py::handle points, py::handle resolution) {
   octomap::OcTreeKey key;
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     const double x = rows(i, 0), y = rows(i, 1), z = rows(i, 2);
-    // octomap leaves out what it cannot hold, and says so on the console only.
+    // octomap leaves out points that it cannot hold, and says so on the console only.
     const bool good = std::isfinite(x) && std::isfinite(y) && std::isfinite(z) &&
                       (rows.row(i).cwiseAbs().array() < 32767 * size).all() && tree->coordToKeyChecked(x, y, z, key);
     if (!good) {
@@ -170,8 +171,8 @@ Geometry points(py::handle points, py::handle radius) {
     const Eigen::VectorXd each = vectorOf(radius, "radius");
     radii.assign(each.data(), each.data() + each.size());
     if (radii.size() != places.size()) {
-      valueError("there are " + std::to_string(places.size()) + " points and " + std::to_string(radii.size()) +
-                 " radii");
+      valueError("there are " + text::counted(places.size(), "point") + " and " +
+                 text::counted(radii.size(), "radius", "radii"));
     }
   } else {
     radii.push_back(lengthOf(radius, "radius"));
@@ -179,7 +180,7 @@ Geometry points(py::handle points, py::handle radius) {
   return makeShape<PointCloud>(std::move(places), std::move(radii));
 }
 
-/// What OctoMap's readData() reads of a node: its log-odds, then a bit for each of its eight children, then these.
+/// OctoMap's readData() reads a node as its log-odds, then a bit for each of its eight children, then the children.
 /// Probabilities are not kept, only which cells are occupied: FCL's thresholds can't be read to the last bit.
 void writeNode(const fcl::OcTreed& tree, const octomap::OcTreeNode* node, std::ostream& out) {
   const float log_odds = tree.isNodeOccupied(node) ? 3.5f : -2.0f;
@@ -278,7 +279,7 @@ Geometry geometryOfState(const py::tuple& s) {
   if (kind == "mesh") return mesh(s[1], s[2], py::cast<bool>(s[3]));
   if (kind == "points") return points(s[1], py::len(s[2]) == 1 ? py::object(s[2][py::int_(0)]) : py::object(s[2]));
   if (kind == "octree") return octreeOfState(py::cast<double>(s[1]), py::cast<std::string>(s[2]));
-  // Not through the constructor, which would divide by the length, not 1 to the last bit, of the normal.
+  // The constructor is not used: it would divide by the normal's length, which is not 1 to the last bit.
   if (kind == "halfspace") {
     Geometry g = makeShape<fcl::Halfspaced>();
     static_cast<fcl::Halfspaced&>(*g.shape).n = vector3Of(s[1], "normal");
@@ -340,14 +341,14 @@ void bindGeometry(py::module_& module) {
            [](const Geometry& g) -> std::string {
              if (const auto* model = asMesh(*g.shape)) {
                return "<Geometry: " + std::string(dynamic_cast<const SolidMark*>(g.shape.get()) ? "solid " : "") +
-                      "mesh of " + std::to_string(model->num_tris) + " triangles>";
+                      "mesh of " + text::counted(model->num_tris, "triangle") + ">";
              }
              const py::tuple state = geometryState(g);
              const std::string kind = py::str(state[0]);
-             if (kind == "points") return "<Geometry: " + std::to_string(py::len(state[1])) + " points>";
+             if (kind == "points") return "<Geometry: " + text::counted(py::len(state[1]), "point") + ">";
              if (kind == "octree") return "<Geometry: octree, cells of " + std::string(py::str(state[1])) + " m>";
              std::string text = "<Geometry: " + kind;
-             if (kind == "convex") return text + ", " + std::to_string(py::len(state[1])) + " vertices>";
+             if (kind == "convex") return text + ", " + text::counted(py::len(state[1]), "vertex", "vertices") + ">";
              for (std::size_t i = 1; i < state.size(); ++i)
                text += (i == 1 ? " " : ", ") + std::string(py::str(state[i]));
              return text + ">";

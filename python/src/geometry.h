@@ -17,14 +17,14 @@ struct Geometry {
   std::shared_ptr<fcl::CollisionGeometryd> shape;
 };
 
-/// The geometry of a Geometry, or the mesh of what has `vertices` and `faces`, as trimesh's Trimesh.
+/// The geometry of a Geometry, or the mesh of an object that has `vertices` and `faces`, as trimesh's Trimesh.
 /// @throws py::type_error naming `what`.
 Geometry geometryOf(py::handle value, const char* what);
 
 /// An object of the geometry at a pose.
 std::shared_ptr<fcl::CollisionObjectd> objectOf(const Geometry& geometry, const Eigen::Isometry3d& pose);
 
-/// Builds from plain numbers and arrays what describes a geometry, and the geometry of that.
+/// Describes a geometry by plain numbers and arrays, and makes it again from these.
 py::tuple geometryState(const Geometry& geometry);
 Geometry geometryOfState(const py::tuple& state);
 

@@ -3,14 +3,16 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "files/files.h"
 #include "gil.h"
 #include "turns.h"
 
 namespace fcl_artic::python {
 
-/// Runs what reads or writes files: a missing file is a FileNotFoundError, other trouble of the system an OSError, all
-/// else that is wrong with a file's content a ValueError. To be called with the GIL held.
+/// Runs a function that reads or writes files. A missing file becomes a FileNotFoundError, other trouble of the system
+/// an OSError, a fault in a file's content a ValueError. To be called with the GIL held.
 /// @param path  of the file that the caller named.
 template <class Read>
 auto guardFiles(const std::string& path, Read&& read) {
@@ -27,6 +29,16 @@ auto guardFiles(const std::string& path, Read&& read) {
       fileNotFound(message, path);
     }
     valueError(message);
+  }
+}
+
+/// Writes files that belong together. A file that cannot be written is an OSError. To be called with the GIL held.
+inline void writeFiles(const std::vector<files::File>& all) {
+  try {
+    files::writeTogether(all);
+  } catch (const std::runtime_error& problem) {
+    PyErr_SetString(PyExc_OSError, problem.what());
+    throw py::error_already_set();
   }
 }
 

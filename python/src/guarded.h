@@ -22,8 +22,8 @@ class Guarded {
   explicit Guarded(Arguments&&... arguments) : manager_(std::forward<Arguments>(arguments)...) {}
 
   /// Changes the manager when no query runs. With the GIL held; `change` runs without it.
-  /// @param commit  writes down beside the manager what has changed: with the GIL, and before any other thread changes
-  ///   or asks the manager, so that what is written down is what the manager has.
+  /// @param commit  writes down beside the manager what has changed. It runs with the GIL, and before any other thread
+  ///   changes or asks the manager: so what is written down is what the manager has.
   /// @throws as Turn.
   template <class Change, class Commit = Nothing>
   void change(const Change& change, const Commit& commit = {}) {

@@ -29,7 +29,7 @@ inline Tree treeOfRobot(std::shared_ptr<const KinematicTree> tree) {
 /// The tree of a KinematicTree, Robot or World.
 /// @throws py::type_error for what has none.
 std::shared_ptr<const KinematicTree> treeOf(py::handle value);
-/// The same, a copy if it is in building: no other thread has it grow while this one has let go of the GIL.
+/// The same, but a copy if the tree is being built: so no other thread changes it while this one has let go of the GIL.
 std::shared_ptr<const KinematicTree> finishedTreeOf(py::handle value);
 
 /// A link by its name or index.
@@ -39,7 +39,7 @@ LinkId linkOf(const KinematicTree& tree, py::handle link);
 /// The straight motion from one configuration to another.
 JointMotion linearMotion(const KinematicTree& tree, py::handle q0, py::handle q1);
 
-/// A motion or trajectory as Python holds it. The library's functions take it as what it derives from.
+/// A motion or trajectory as Python holds it. The library's functions take it as its base class.
 template <class Base>
 struct Made : Base {
   Made(Base base, Recipe how) : Base(std::move(base)), recipe(std::move(how)) {}
@@ -55,7 +55,7 @@ inline bool isMotion(py::handle value) {
 
 /// The trajectory through waypoints.
 /// @param times  None: 0, 1, ...: times are numbers of waypoints.
-/// @param velocities, accelerations, blend  None, or what makes it cubic, quintic, or of parabolic blends.
+/// @param velocities, accelerations, blend None, or the values that make it cubic, quintic, or of parabolic blends.
 JointTrajectory trajectoryThrough(const KinematicTree& tree, py::handle waypoints, py::handle times,
                                   py::handle velocities, py::handle accelerations, py::handle blend, bool unwrap);
 

@@ -13,8 +13,8 @@
 
 namespace fcl_artic::python {
 
-/// A motion as Python holds it; it is not changed once it is made. Its functions are the recipe's: who has `motion` or
-/// `pose` has the recipe beside it.
+/// A motion as Python holds it; it is not changed once it is made. Its functions belong to the recipe: keep the recipe
+/// as long as `motion` or `pose`.
 struct Motion {
   const char* kind = "";
   std::shared_ptr<const fcl::MotionBased> motion;

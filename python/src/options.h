@@ -34,7 +34,7 @@ void applyOptions(Request& request, const py::kwargs& options);
 
 /// The request for a clearance.
 ClearanceRequest readClearanceRequest(const py::kwargs& options, py::object& progress);
-/// The request as an expression, without what is as by default.
+/// The request as an expression, without options that have their default.
 std::string text(const Request& request);
 
 void bindRequest(py::module_& module);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How an object was made, to make it again in another process: bit by bit the same, which its own numbers, rounded as
-// they are, would not do.
+// How an object was made, to make it again in another process, bit by bit the same. (Its own numbers are rounded, so
+// they would not give the same bits.)
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ class Recipe {
         arguments_(py::module_::import("copy").attr("deepcopy")(arguments)),
         owner_(std::move(owner)) {}
 
-  /// Of arguments that nobody changes: they are kept as they are.
+  /// A recipe of arguments that nobody changes: they are kept as they are.
   static Recipe ofFixed(std::string maker, py::tuple arguments) {
     Recipe recipe;
     recipe.maker_ = std::move(maker);
@@ -38,7 +38,7 @@ class Recipe {
     return 0;
   }
 
-  /// What pickle wants to know of an object.
+  /// The answer to pickle's question how an object is made.
   /// @throws py::type_error if nothing is known.
   py::tuple reduced(const py::object& self) const {
     if (maker_.empty()) typeError("this " + typeName(self) + " cannot be pickled");

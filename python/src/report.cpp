@@ -19,7 +19,7 @@ namespace fcl_artic::python {
 #ifdef FCL_ARTIC_HAS_REPORTS
 namespace {
 
-/// What the page shows; movers by functions that are called with the GIL held.
+/// The bodies that the page shows; movers by functions that are called with the GIL held.
 std::vector<app::PageBody> bodiesOf(const World& world, double begin, double length) {
   std::vector<app::PageBody> bodies = app::linksOf(*world.tree(), world.robot().geometry);
   for (const World::Body& b : world.bodies()) {
@@ -31,7 +31,7 @@ std::vector<app::PageBody> bodiesOf(const World& world, double begin, double len
                       b.object->collisionGeometry(),
                       {}});
   }
-  for (const World::Mover& m : world.movers()) {
+  for (const World::MovingObstacle& m : world.movers()) {
     bodies.push_back({m.name, "moving obstacle", -1, Eigen::Isometry3d::Identity(), m.object->collisionGeometry(),
                       [motion = m.motion, begin, length](double t) { return motion.pose((t - begin) / length); }});
   }

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "fcl_artic/clearance.h"
-#include "files/files.h"
+#include "guard_files.h"
 
 namespace fcl_artic::python {
 namespace {
@@ -28,7 +28,7 @@ py::dict fieldsOf(const Work& work) {
   return fields;
 }
 
-/// Reads back what fieldsOf() has written; what is not there stays 0.
+/// Reads back the fields that fieldsOf() has written; a field that is not there stays 0.
 template <class Work>
 void readFields(const py::dict& fields, Work& work) {
   Work::forEachField([&](const char* name, auto member) {
@@ -55,7 +55,7 @@ py::object pieceOf(std::intptr_t piece) {
   return piece < 0 ? py::object(py::none()) : py::int_(piece);
 }
 
-// What a pickled result holds: all but the caller's own objects, which Python does not see.
+// Pickled results hold all but the caller's own objects, which Python does not see.
 
 py::tuple state(const BodyRef& body) {
   return py::make_tuple(body.link, body.name, body.moving != nullptr);
@@ -216,7 +216,7 @@ CertifiedPairResult pairResultOfState(const py::tuple& s) {
   return r;
 }
 
-/// What all results with contacts have of them.
+/// Members of all results that have contacts.
 template <class Result>
 void bindContacts(py::class_<Result>& bound) {
   bound
@@ -251,13 +251,8 @@ void bindCertificate(py::module_& module) {
           [](const Certificate& c, py::handle path) {
             if (!c) valueError("there is no proof: " + c.missing);
             const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
-            try {
-              const std::string record = c.record();  // names the world's hash
-              files::writeTogether({{file + ".world", *c.world}, {file, record}});
-            } catch (const std::runtime_error& problem) {
-              PyErr_SetString(PyExc_OSError, problem.what());
-              throw py::error_already_set();
-            }
+            const std::string record = c.record();  // names the world's hash
+            writeFiles({{file + ".world", *c.world}, {file, record}});
           },
           "Writes the proof, and what stands and moves beside it, PATH.world, for `fcl_artic_verify PATH.world PATH`.",
           py::arg("path"))

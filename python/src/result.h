@@ -14,8 +14,8 @@ namespace fcl_artic::python {
 /// Work of a query as a dict by the names of QueryStatistics.
 py::dict statisticsOf(const QueryStatistics& statistics);
 
-/// Gives a class of results what all of them have: verdict and bracket. A result has no truth value: whether True were
-/// "free" or "contact" would be a guess.
+/// Gives a class of results the members that all of them have: verdict and bracket. A result has no truth value: nobody
+/// could know whether True were "free" or "contact".
 template <class Result, class... Rest>
 void bindBracket(py::class_<Result, Rest...>& bound) {
   bound.def_property_readonly("status", [](const Result& r) { return memberOf(r.status); })

@@ -61,7 +61,7 @@ Motion translation(py::handle begin, py::handle displacement) {
 
 Motion linear(py::handle begin, py::handle end) {
   const Isometry3d from = poseOf(begin, "begin"), to = poseOf(end, "end");
-  // With the point that goes straight: FCL's constructor of two poses leaves it uninitialised.
+  // The point that goes straight is given: FCL's constructor of two poses leaves it uninitialised.
   return makeMotion<fcl::InterpMotion<double>>("linear", py::make_tuple(begin, end), from.linear(), from.translation(),
                                                to.linear(), to.translation(), Vector3d(Vector3d::Zero()));
 }
@@ -88,8 +88,7 @@ Motion ofLink(py::handle tree, py::handle motion, py::handle link, py::handle of
           Recipe("of_link", py::make_tuple(treeOfRobot(of), motion, link, offset))};
 }
 
-/// A motion of one's own, whose state and bounds Python functions tell, which must outlive it: Motion's recipe has
-/// them.
+/// A motion of one's own. Python functions give its state and bounds, and must outlive it: Motion's recipe has them.
 class OwnMotion : public fcl::MotionBased, public BoundedMotion {
  public:
   OwnMotion(py::handle state, py::handle bounds, bool derivatives)

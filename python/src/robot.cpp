@@ -9,6 +9,7 @@
 #include <cerrno>
 
 #include "link_pairs.h"
+#include "text/counted.h"
 
 namespace fcl_artic::python {
 namespace {
@@ -221,7 +222,7 @@ void bindRobot(py::module_& module) {
           "classify_link_pairs",
           [](const Robot& robot, py::handle only, double margin, std::uint64_t work, std::size_t samples, int threads,
              py::object progress) {
-            // Of a copy: another thread may change the robot meanwhile.
+            // The library gets a copy: another thread may change the robot meanwhile.
             return classifyWatched(only, margin, work, samples, threads, std::move(progress), [robot](const auto& run) {
               const GilReleased released;
               const InLibrary within;
@@ -234,8 +235,10 @@ void bindRobot(py::module_& module) {
       .def_property_readonly("reach", [](const Robot& r) { return reachUpper(*r.tree, r.geometry); })
       .def("__repr__",
            [](const Robot& r) {
-             return py::str("<Robot {!r}: {} links, {} variables, {} geometries>")
-                 .format(r.tree->name(), r.tree->numLinks(), r.tree->dof(), r.geometry.size());
+             return py::str("<Robot {!r}: {}, {}, {}>")
+                 .format(r.tree->name(), text::counted(r.tree->numLinks(), "link"),
+                         text::counted(r.tree->dof(), "variable"),
+                         text::counted(r.geometry.size(), "geometry", "geometries"));
            })
       .def(py::pickle(&robotState, &robotOfState));
 

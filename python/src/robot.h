@@ -14,13 +14,13 @@ namespace fcl_artic::python {
 py::frozenset pairsOf(const AllowedCollisionMatrix& matrix);
 /// @param value  pairs of names in any collection. @throws py::type_error naming `what`.
 AllowedCollisionMatrix matrixOfPairs(py::handle value, const char* what);
-/// The same with what another matrix says beyond its pairs: whether they are all, and what was disallowed.
+/// The same, with another matrix's data beside its pairs: whether they are all, and which pairs were disallowed.
 AllowedCollisionMatrix matrixOfPairs(py::handle value, const char* what, const AllowedCollisionMatrix& before);
 
 /// Folders of ROS packages, from None or a dict. @throws py::type_error.
 std::map<std::string, std::string> packagesOf(py::handle value);
 
-/// A file that the caller names by its path or hands over as text: what begins with `<` is text.
+/// A file that the caller names by its path or hands over as text. A value that begins with `<` is text.
 class Input {
  public:
   /// @throws py::type_error naming `what`: neither str nor os.PathLike.
@@ -28,7 +28,7 @@ class Input {
   ~Input();
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
-  /// What the loaders read.
+  /// The path that the loaders read.
   const std::string& path() const { return path_; }
   /// Reads, with the errors of guardFiles(); messages call a text "text".
   template <class Read>
@@ -45,8 +45,8 @@ void bindRobot(py::module_& module);
 void bindLinkPairs(py::module_& module);
 
 using ClassifyWith = std::function<LinkPairReport(const LinkPairOptions&)>;
-/// How classify_link_pairs() is asked, of a robot or a world.
-/// @param ask  calls what it gets with a function that classifies: in the library, without the GIL.
+/// Answers classify_link_pairs(), for a robot or a world.
+/// @param ask  calls its argument with a function that classifies: in the library, without the GIL.
 LinkPairReport classifyWatched(py::handle only, double margin, std::uint64_t work, std::size_t samples, int threads,
                                py::object progress,
                                const std::function<void(const std::function<void(const ClassifyWith&)>&)>& ask);

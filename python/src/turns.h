@@ -4,10 +4,10 @@
 // by many, in the order in which they come; a process is forked when no other thread is within the library.
 //
 // Questions ask back: a callback may ask the same manager or others. Such a question does not stand in line after
-// changes that wait, which wait for the question that it is part of. So no thread that holds a turn waits for one that
-// stands in line, and all end.
+// changes that wait: these wait for the question that it is part of. So no thread that holds a turn waits for a thread
+// that stands in line, and all threads come to their end.
 //
-// Nothing here is called with the GIL, but for what says so: whoever holds it waits for nobody.
+// Nothing here is called with the GIL unless its comment says so: a thread that holds the GIL waits for nobody.
 #pragma once
 
 #include <list>
@@ -33,7 +33,7 @@ class Turns {
   mutable unsigned process_ = 0;  ///< number of the process, counted by forks, that the above is of
 };
 
-/// What a thread does in the library.
+/// The doings of a thread in the library.
 struct Doings {
   std::vector<const Turns*> asks, changes;
   int depth = 0;  ///< of scopes in the library; 0: it is outside
@@ -42,7 +42,7 @@ struct Doings {
   static Doings& here();
 };
 
-/// Has the calling thread, which another one has made, do its part of that one's work in the library.
+/// While it lives, the calling thread does a part of the work in the library of the thread that has made it.
 class PartOf {
  public:
   explicit PartOf(const Doings& doings);
@@ -68,8 +68,8 @@ class Turn {
   /// Waits until it is this thread's turn.
   /// @param also  asked together with the first; null: none.
   /// @throws std::runtime_error where it would wait for this thread itself: in a callback of a query, for a change; in
-  ///   one of a change, for anything. What Python raises meanwhile, KeyboardInterrupt above all; std::runtime_error
-  ///   once the interpreter ends.
+  ///   one of a change, for anything. Also throws what Python raises meanwhile, KeyboardInterrupt above all, and
+  ///   std::runtime_error once the interpreter ends.
   Turn(Kind kind, const Turns& of, const Turns* also = nullptr);
   ~Turn();
   Turn(const Turn&) = delete;
@@ -83,9 +83,9 @@ class Turn {
 };
 
 /// A call of a function of the module; functions.cpp makes one of each. When a script ends, Python takes daemon threads
-/// away wherever they want the GIL, by unwinding their frames, and an object of Python's that is let go of without the
-/// GIL there ends the process with an error. So the end waits for calls, which it tells to stop, and whoever begins
-/// another one then, but for one within a call, sleeps until the process is gone. With the GIL.
+/// away wherever they want the GIL, by unwinding their frames. If an object of Python's is let go of there, without the
+/// GIL, the process ends with an error. So the end of the script tells calls to stop, and waits for them. A thread that
+/// begins another call then sleeps until the process is gone, unless it is within a call. With the GIL.
 class Call {
  public:
   Call();
@@ -96,11 +96,11 @@ class Call {
   /// Whether the calls that run are to stop.
   static bool shallStop();
 };
-/// Has the end of a script wait so. With the GIL.
+/// Makes the end of a script wait so. With the GIL.
 void watchEnd();
 
-/// Has fork() wait until no other thread is within the library, and the child begin with no thread but its own. A fork
-/// in a callback does not wait. With the GIL.
+/// Makes fork() wait until no other thread is within the library, and the child begin with no thread but its own. A
+/// fork in a callback does not wait. With the GIL.
 void watchForks();
 
 }  // namespace fcl_artic::python

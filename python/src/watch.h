@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What Python has to say while a query runs without the GIL: Ctrl-C and other signals, and the caller's `progress`.
+// Python's interruptions of a query that runs without the GIL: Ctrl-C and other signals, and the caller's `progress`.
 #pragma once
 
 #include <atomic>
@@ -27,8 +27,8 @@ class Watch {
     }
   }
 
-  /// Whether to go on. Takes the GIL only where the last time is long enough ago. From one thread at a time, without
-  /// the GIL.
+  /// Whether to go on. Takes the GIL only if the last time is long enough ago. From one thread at a time, without the
+  /// GIL.
   bool goOn(double fraction) {
     const auto now = Clock::now();
     if (now < next_) return true;

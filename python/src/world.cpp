@@ -9,9 +9,12 @@
 #include "collected.h"
 #include "enums.h"
 #include "fcl_artic/visibility/offscreen.h"
+#include "guard_files.h"
 #include "link_pairs.h"
 #include "options.h"
+#include "replay/query_file.h"
 #include "robot.h"
+#include "text/counted.h"
 #include "text/nearest_name.h"
 #include "watch.h"
 
@@ -26,7 +29,7 @@ std::vector<std::string> World::names() const {
   std::vector<std::string> names;
   for (LinkId l = 0; l < robot_.tree->numLinks(); ++l) names.push_back(robot_.tree->linkName(l));
   for (const Body& body : bodies_) names.push_back(body.name);
-  for (const Mover& mover : movers_) names.push_back(mover.name);
+  for (const MovingObstacle& mover : movers_) names.push_back(mover.name);
   return names;
 }
 
@@ -84,23 +87,23 @@ void World::add(const std::string& name, const Geometry& geometry, const Eigen::
 
 void World::addMoving(const std::string& name, const Geometry& geometry, const Motion& motion) {
   if (name.empty()) valueError("an obstacle needs a name");
-  const Mover mover{name,
-                    std::make_shared<fcl::ContinuousCollisionObjectd>(
-                        geometry.shape, std::const_pointer_cast<fcl::MotionBased>(motion.motion)),
-                    motion};
+  const MovingObstacle mover{name,
+                             std::make_shared<fcl::ContinuousCollisionObjectd>(
+                                 geometry.shape, std::const_pointer_cast<fcl::MotionBased>(motion.motion)),
+                             motion};
   manager_.change([&](ArticulatedCollisionManager& manager) { manager.registerObject(mover.object.get(), name); },
                   [&] { movers_.push_back(mover); });
 }
 
 void World::remove(const std::string& name) {
   const auto mover =
-      std::find_if(movers_.begin(), movers_.end(), [&](const Mover& other) { return other.name == name; });
+      std::find_if(movers_.begin(), movers_.end(), [&](const MovingObstacle& other) { return other.name == name; });
   if (mover != movers_.end()) {
     const auto object = mover->object;
     manager_.change([&](ArticulatedCollisionManager& manager) { manager.unregisterObject(object.get()); },
                     [&] {
                       movers_.erase(std::find_if(movers_.begin(), movers_.end(),
-                                                 [&](const Mover& m) { return m.object == object; }));
+                                                 [&](const MovingObstacle& m) { return m.object == object; }));
                     });
     return;
   }
@@ -233,7 +236,7 @@ std::vector<std::string> World::namesOf(const std::string& name) const {
 }
 
 int World::visit(visitproc visit, void* arg) const {
-  for (const Mover& mover : movers_) {
+  for (const MovingObstacle& mover : movers_) {
     if (const int status = mover.motion.recipe.visit(visit, arg)) return status;
   }
   return 0;
@@ -246,7 +249,7 @@ World::Body& World::ofObject(const std::shared_ptr<fcl::CollisionObjectd>& objec
 void World::refuseName(const std::string& name) const {
   std::vector<std::string> names;
   for (const Body& body : bodies_) names.push_back(body.name);
-  for (const Mover& mover : movers_) {
+  for (const MovingObstacle& mover : movers_) {
     if (mover.name == name) valueError("'" + name + "' moves by itself");
     names.push_back(mover.name);
   }
@@ -331,6 +334,26 @@ CertifiedResult collide(const World& world, py::handle q, const py::kwargs& opti
   CertifiedResult result;
   world.manager().ask(
       [&](const ArticulatedCollisionManager& manager) { manager.collide(at, request.request, result); });
+  watch.finish();
+  return result;
+}
+
+void dump(const World& world, py::handle path, py::handle q0, py::handle q1, const py::kwargs& options) {
+  const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
+  const Request request = readRequest(options);
+  const Question question = questionOf(world, q0, q1);
+  const std::string text = world.manager().ask([&](const ArticulatedCollisionManager& manager) {
+    return std::visit([&](const auto& motion) { return manager.writeQuery(motion, request.request); }, question);
+  });
+  writeFiles({{file, text}});
+}
+
+CertifiedResult askAgain(py::handle path) {
+  const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
+  RecordedQuery query = guardFiles(file, [&] { return replay::readQueryFile(file); });
+  Watch watch;
+  query.request.progress = [&watch](double) { return watch.goOn(0); };
+  CertifiedResult result = guardFiles(file, [&] { return query.ask(); });
   watch.finish();
   return result;
 }
@@ -530,6 +553,11 @@ void bindQueries(py::class_<World>& world) {
       .def("collide", &collide,
            "Finds what touches at one configuration. (Obstacles that move do so all the same, over all of their time.)",
            py::arg("q"))
+      .def("dump", &dump,
+           "Writes the question that check(q0, q1) asks to a file, JSON with all that its answer depends on. replay()\n"
+           "and the program's check --replay ask it again, with the same bits: a report of a surprising answer should\n"
+           "have one.",
+           py::arg("path"), py::arg("q0"), py::arg("q1") = py::none())
       .def(
           "clearance", &clearance,
           "The smallest distance of any checked pair on the whole way, proven from below and from above. With\n"
@@ -557,6 +585,10 @@ void bindQueries(py::class_<World>& world) {
 }  // namespace
 
 void bindWorld(py::module_& module) {
+  module.def("replay", &askAgain,
+             "Asks the question of a file that World.dump() or the program's check --dump has written. The answer has\n"
+             "the same bits as the first one, on a processor with the same instruction_set().",
+             py::arg("path"));
   py::class_<World> world(
       module, "World", collected<World>(),
       "Robots and obstacles, ready to be asked. Threads may share it. The robot is copied: what is changed\n"
@@ -569,7 +601,8 @@ void bindWorld(py::module_& module) {
           "obstacles",
           [](const World& w) { return namesOf<World::Body>(w.bodies(), [](const auto& b) { return b.carrier < 0; }); })
       .def_property_readonly(
-          "moving", [](const World& w) { return namesOf<World::Mover>(w.movers(), [](const auto&) { return true; }); })
+          "moving",
+          [](const World& w) { return namesOf<World::MovingObstacle>(w.movers(), [](const auto&) { return true; }); })
       .def_property_readonly("attached",
                              [](const World& w) {
                                py::dict attached;
@@ -603,8 +636,9 @@ void bindWorld(py::module_& module) {
       .def("__repr__", [](const World& w) {
         std::size_t carried = 0;
         for (const World::Body& b : w.bodies()) carried += b.carrier >= 0;
-        return py::str("<World: robot {!r} with {} variables, {} obstacles, {} moving, {} attached>")
-            .format(w.tree()->name(), w.tree()->dof(), w.bodies().size() - carried, w.movers().size(), carried);
+        return py::str("<World: robot {!r} with {}, {}, {} moving, {} attached>")
+            .format(w.tree()->name(), text::counted(w.tree()->dof(), "variable"),
+                    text::counted(w.bodies().size() - carried, "obstacle"), w.movers().size(), carried);
       });
   bindChanges(world);
   bindQueries(world);

@@ -22,7 +22,7 @@ namespace fcl_artic::python {
 /// A world. All members are to be called with the GIL held, but for names(), which a question may call too.
 class World {
  public:
-  /// What stands still, or is carried by a link.
+  /// A body that stands still, or that a link carries.
   struct Body {
     std::string name;
     std::shared_ptr<fcl::CollisionObjectd> object;
@@ -32,8 +32,8 @@ class World {
     std::string shape_of = {};  ///< as Scene::Obstacle::shape_of
     std::vector<std::string> touch_links = {};
   };
-  /// What moves by itself.
-  struct Mover {
+  /// A body that moves by itself.
+  struct MovingObstacle {
     std::string name;
     std::shared_ptr<fcl::ContinuousCollisionObjectd> object;
     Motion motion;
@@ -44,18 +44,18 @@ class World {
   const Robot& robot() const { return robot_; }
   std::shared_ptr<const KinematicTree> tree() const { return robot_.tree; }
   const std::vector<Body>& bodies() const { return bodies_; }
-  const std::vector<Mover>& movers() const { return movers_; }
+  const std::vector<MovingObstacle>& movers() const { return movers_; }
   /// Names of links, then of all else, in the order of their registration.
   std::vector<std::string> names() const;
   AllowedCollisionMatrix allowed() const;
 
-  /// Copies the geometry's reference, so that the scene may go and its objects stay as they are.
+  /// Copies references to the geometries, so the scene may be destroyed, and its objects stay as they are.
   void addScene(const Scene& scene);
   /// Puts a scene in place of all obstacles that stand still and are not carried.
   void replaceScene(const Scene& scene);
   void add(const std::string& name, const Geometry& geometry, const Eigen::Isometry3d& pose);
   void addMoving(const std::string& name, const Geometry& geometry, const Motion& motion);
-  /// Members that take a name of an object with several shapes do for all of them what they do for one.
+  /// If a member gets the name of an object with several shapes, it acts on all of them.
   void remove(const std::string& name);
   void move(const std::string& name, const Eigen::Isometry3d& pose);
   void attach(const std::string& name, LinkId link, const Eigen::Isometry3d& offset,
@@ -75,7 +75,7 @@ class World {
  private:
   /// The bodies that a name stands for, the object's first shape first.
   std::vector<Body> find(const std::string& name) const;
-  /// What has the object, which the manager has.
+  /// The body that has the object, which the manager has.
   Body& ofObject(const std::shared_ptr<fcl::CollisionObjectd>& object);
   [[noreturn]] void refuseName(const std::string& name) const;
 
@@ -83,17 +83,17 @@ class World {
   Guarded<ArticulatedCollisionManager> manager_;
   // Written with the GIL held while the manager changes, so that to hold one of the two is enough to read them.
   std::vector<Body> bodies_;
-  std::vector<Mover> movers_;
+  std::vector<MovingObstacle> movers_;
 };
 
-/// What moves: straight from q0 to q1, a motion, or a trajectory.
+/// The motion of a question: straight from q0 to q1, a motion, or a trajectory.
 using Question = std::variant<JointMotion, JointTrajectory>;
 /// @param q1  None where `motion` is a motion or trajectory itself.
 Question questionOf(const World& world, py::handle motion, py::handle q1);
 
 /// Asks, and tells `progress` of the request and Ctrl-C meanwhile.
 CertifiedResult answer(const World& world, const Question& question, Request request);
-/// @throws ValueError for a result that can't be of this question: its links stand elsewhere at t_lower, or are others.
+/// @throws ValueError for a result of another question: its links stand elsewhere at t_lower, or are other links.
 void requireAnswerOf(const World& world, const Question& question, const CertifiedResult& result);
 
 void bindWorld(py::module_& module);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What goes to another process comes back as it was."""
+"""An object that goes to another process comes back as it was."""
 import os
 import pickle
 import shutil
@@ -173,7 +173,7 @@ def test_a_motion_of_a_rigid_body_is_the_same(robot, hit):
         assert copy.kind == motion.kind
         for t in (0, 0.3, 1):
             assert np.array_equal(copy.pose(t), motion.pose(t))
-    # What pickle cannot find by its name, it refuses.
+    # If pickle cannot find an object by its name, it refuses the object.
     with pytest.raises((AttributeError, pickle.PicklingError)):
         pickle.dumps(M.bounded(lambda t: np.eye(4), at_most, derivatives=False))
 

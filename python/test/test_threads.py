@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Threads, forks and lifetimes. What could wait for ever runs in a Python of its own, which is ended if it does."""
+"""Threads, forks and lifetimes. A test that could wait for ever runs in a Python of its own, which is ended if it does."""
 import gc
 import re
 import signal

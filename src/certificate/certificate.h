@@ -30,9 +30,9 @@ struct Claim {
 Motion motionOf(const World& world, const JointMotion& motion, const TimePart& time);
 
 /// Most nodes that are tried before it is said that no proof was found: some seconds.
-constexpr std::uint64_t kMostNodes = 200000;
+constexpr std::uint64_t kMaxNodes = 200000;
 
-Certificate makeCertificate(const World& world, const Claim& claim, std::uint64_t work = kMostNodes);
+Certificate makeCertificate(const World& world, const Claim& claim, std::uint64_t work = kMaxNodes);
 
 /// Has the motion claim what a query was asked and has answered: margins, and until when. That is to the end of a free
 /// motion, else a tolerance before t_lower, where the gap may be 0.

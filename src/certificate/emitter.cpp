@@ -26,14 +26,14 @@ using Eigen::Vector3d;
 constexpr int kSep = 0x00, kSepFine = 0x03, kWall = 0x09, kWallOther = 0x0a, kTime = 0x10, kPartners = 0x11,
               kOwn = 0x12, kOther = 0x13, kSolid = 0x14;
 /// In which frame a direction is constant, as a number to be added to kSep and kSepFine.
-enum class Seen { inWorld = 0, byBody = 1, byPartner = 2 };
+enum class DirectionFrame { world = 0, body = 1, partner = 2 };
 
-constexpr int kMostTimeCuts = 40;  ///< of one root: 1e-12 of the motion
-constexpr int kMostSearchSteps = 40;
+constexpr int kMaxTimeCuts = 40;  ///< of one root: 1e-12 of the motion
+constexpr int kMaxSearchSteps = 40;
 
-/// What a node is about: A's pieces below `node`, partners [first, last) of its list, of a single one the pieces below
-/// `partner_node`, and times [begin, end].
-struct Task {
+/// The subject of a node, with the pieces below `partner_node` if there is a single partner: A's pieces below `node`,
+/// partners [first, last) of its list, and times [begin, end].
+struct ProofTask {
   int body;
   std::int32_t node = 0;
   std::size_t first, last;
@@ -58,7 +58,7 @@ class Emitter {
         if (isAsked(static_cast<int>(i), j)) partners_.push_back(j);
       }
       if (partners_.empty()) continue;
-      Task root;
+      ProofTask root;
       root.body = static_cast<int>(i);
       root.first = 0;
       root.last = partners_.size();
@@ -77,9 +77,9 @@ class Emitter {
 
   // ---- what a task's sets are, seen from a frame
 
-  /// Partners that are checked somewhere in the task's time: of a pair that touched at the beginning nothing is claimed
-  /// before its time.
-  bool counts(const Task& task, int partner) const {
+  /// Whether a partner is checked somewhere in the task's time. (A pair that touched at the beginning is checked only
+  /// after its own time.)
+  bool counts(const ProofTask& task, int partner) const {
     for (const Motion::Ignored& pair : moving_.motion().ignored) {
       if (pair.a == std::min(task.body, partner) && pair.b == std::max(task.body, partner)) {
         return task.end > pair.until;
@@ -87,9 +87,9 @@ class Emitter {
     }
     return true;
   }
-  int frameOf(const Task& task, Seen seen) const {
-    if (seen == Seen::inWorld) return 0;
-    return moving_.body(seen == Seen::byBody ? task.body : partners_[task.first]).frame;
+  int frameOf(const ProofTask& task, DirectionFrame seen) const {
+    if (seen == DirectionFrame::world) return 0;
+    return moving_.body(seen == DirectionFrame::body ? task.body : partners_[task.first]).frame;
   }
 
   static Vector3d farthestAt(const Geometry& geometry, std::int32_t node, const Pose& pose, const Vector3d& u,
@@ -100,12 +100,12 @@ class Emitter {
   /// A task's sets seen from a frame. Partners that stand still in it are `still`: their ends are the same at all
   /// times.
   struct Sets {
-    const Task& task;
+    const ProofTask& task;
     int frame;
     bool exact;  ///< false: hulls around whole bodies will do
     std::vector<int> still, moving;
   };
-  Sets setsOf(const Task& task, int frame, bool exact) {
+  Sets setsOf(const ProofTask& task, int frame, bool exact) {
     Sets sets{task, frame, exact, {}, {}};
     for (std::size_t p = task.first; p < task.last; ++p) {
       if (!counts(task, partners_[p])) continue;
@@ -114,7 +114,7 @@ class Emitter {
     return sets;
   }
   /// The greatest n.y + margin |n| over some partners at time t.
-  double mostOf(const Sets& sets, const std::vector<int>& partners, const Vector3d& n, double t) {
+  double maxAlong(const Sets& sets, const std::vector<int>& partners, const Vector3d& n, double t) {
     double most = -std::numeric_limits<double>::infinity();
     const std::int32_t node = sets.task.size() == 1 ? sets.task.partner_node : 0;
     for (const int partner : partners) {
@@ -129,12 +129,12 @@ class Emitter {
   class Separation {
    public:
     Separation(Emitter& emitter, const Sets& sets, const Vector3d& n)
-        : emitter_(emitter), sets_(sets), n_(n), still_(emitter.mostOf(sets, sets.still, n, 0)) {}
+        : emitter_(emitter), sets_(sets), n_(n), still_(emitter.maxAlong(sets, sets.still, n, 0)) {}
 
     /// Whether the gap stays open, by its values at some times and a bound on how far it bends in between. A part of it
     /// is kept for the verifier's rounding.
     bool holds() {
-      const Task& task = sets_.task;
+      const ProofTask& task = sets_.task;
       if (!isOpen(task.begin) || !isOpen(task.end) || !isOpen(task.middle())) return false;
       double bend = emitter_.moving_.acceleration(task.body, sets_.frame, task.middle());
       double other = 0;
@@ -151,10 +151,10 @@ class Emitter {
 
    private:
     double gapAt(double t) {
-      const Task& task = sets_.task;
+      const ProofTask& task = sets_.task;
       const Pose& pose = emitter_.moving_.pose(task.body, sets_.frame, t);
       const Vector3d near = farthestAt(emitter_.moving_.geometry(task.body), task.node, pose, -n_, sets_.exact);
-      return n_.dot(near) - std::max(still_, emitter_.mostOf(sets_, sets_.moving, n_, t));
+      return n_.dot(near) - std::max(still_, emitter_.maxAlong(sets_, sets_.moving, n_, t));
     }
     bool isOpen(double t) {
       last_ = gapAt(t);
@@ -209,7 +209,7 @@ class Emitter {
       Vector3d still_point = Vector3d::Zero();
       takeLeast(sets.still, along, 0, still, still_point);
       for (const double t : times) {
-        const Task& task = sets.task;
+        const ProofTask& task = sets.task;
         const Pose& pose = emitter.moving_.pose(task.body, sets.frame, t);
         const Vector3d own = farthestAt(emitter.moving_.geometry(task.body), task.node, pose, along, sets.exact);
         double other = still;
@@ -232,8 +232,7 @@ class Emitter {
     Vector3d guess = moving_.pose(partner, sets.frame, middle).c - moving_.pose(sets.task.body, sets.frame, middle).c;
     if (!(guess.norm() > 1e-9)) guess = Vector3d::UnitX();
     baseline::GjkResult found;
-    baseline::searchNearest(Sweep{*this, sets, times}, fromEigen(guess), 0.2, 0.0, baseline::kInfinite,
-                            kMostSearchSteps, found);
+    baseline::searchNearest(Sweep{*this, sets, times}, fromEigen(guess), {0.2, 0.0, kMaxSearchSteps}, found);
     n = -toEigen(found.n);
     return found.lower > 0;
   }
@@ -241,7 +240,7 @@ class Emitter {
   // ---- hints
 
   /// Writes the direction with as few bits as do.
-  bool put(const Sets& sets, Seen seen, const Vector3d& n, double& closed_at) {
+  bool put(const Sets& sets, DirectionFrame seen, const Vector3d& n, double& closed_at) {
     for (const bool fine : {false, true}) {
       const double most = fine ? 2147483647.0 : 32767.0;
       const double scale = most / n.cwiseAbs().maxCoeff();
@@ -259,11 +258,11 @@ class Emitter {
     return false;
   }
 
-  bool separate(const Task& task) {
-    for (const Seen seen : {Seen::inWorld, Seen::byPartner, Seen::byBody}) {
-      // Frames in which nothing else moves: of obstacles the world's, of one link that link's.
+  bool separate(const ProofTask& task) {
+    for (const DirectionFrame seen : {DirectionFrame::world, DirectionFrame::partner, DirectionFrame::body}) {
+      // A frame in which the partners stand still: the world's for obstacles, a link's own for one link.
       const bool scene = moving_.body(partners_[task.first]).frame == 0;
-      if (seen == (scene ? Seen::byPartner : Seen::inWorld)) continue;
+      if (seen == (scene ? DirectionFrame::partner : DirectionFrame::world)) continue;
       for (const bool exact : {false, true}) {
         if (exact && task.size() > 1) break;  // the partners one by one then
         const Sets sets = setsOf(task, frameOf(task, seen), exact);
@@ -280,8 +279,8 @@ class Emitter {
     }
     return false;
   }
-  /// Nobody asks for any of its pairs at these times: any direction does.
-  bool isEmpty(const Task& task) const {
+  /// Whether no pair of the task is checked at these times: then any direction will do.
+  bool isEmpty(const ProofTask& task) const {
     for (std::size_t p = task.first; p < task.last; ++p) {
       if (counts(task, partners_[p])) return false;
     }
@@ -292,7 +291,7 @@ class Emitter {
     for (const int x : {1, 0, 0}) out_.fixed(x, 2);
   }
 
-  bool separateWall(const Task& task) {
+  bool separateWall(const ProofTask& task) {
     const bool own = moving_.geometry(task.body).unbounded;
     const int wall = own ? task.body : partners_[task.first];
     const engine::Piece& piece = moving_.geometry(wall).shape->view().pieces[0];
@@ -306,7 +305,7 @@ class Emitter {
     }
     return false;
   }
-  bool wallSeparates(const Task& task, int wall, bool own, int frame, const Vector3d& normal, double offset) {
+  bool wallSeparates(const ProofTask& task, int wall, bool own, int frame, const Vector3d& normal, double offset) {
     const int body = own ? partners_[task.first] : task.body;
     const std::int32_t node = own ? task.partner_node : task.node;
     const double margin = moving_.margin(task.body, partners_[task.first]);
@@ -330,14 +329,14 @@ class Emitter {
 
   // ---- the tree
 
-  void solve(const Task& task) {
+  void solve(const ProofTask& task) {
     if (!missing_.empty()) return;
     if (++nodes_ > work_) {
       missing_ = "more than " + std::to_string(work_) + " nodes would be needed";
       return;
     }
     if (isEmpty(task)) return putEmpty();
-    // (Of partners that are not mixed all are unbounded or none.)
+    // Partners that are not mixed are all unbounded, or none of them is.
     const bool wall = moving_.geometry(task.body).unbounded || moving_.geometry(partners_[task.first]).unbounded;
     if (wall && task.size() == 1) {
       if (separateWall(task)) return;
@@ -355,27 +354,27 @@ class Emitter {
     return moving_.body(body).frame == 0 ? 1 : 2;
   }
   /// Number of the first partners that are of one group.
-  std::size_t ofOneGroup(const Task& task) const {
+  std::size_t ofOneGroup(const ProofTask& task) const {
     std::size_t n = 1;
     while (n < task.size() && groupOf(partners_[task.first]) == groupOf(partners_[task.first + n])) ++n;
     return n;
   }
-  bool isMixed(const Task& task) const { return ofOneGroup(task) < task.size(); }
+  bool isMixed(const ProofTask& task) const { return ofOneGroup(task) < task.size(); }
 
-  void cutPartners(const Task& task) {
+  void cutPartners(const ProofTask& task) {
     const std::size_t same = ofOneGroup(task), half = same < task.size() ? same : task.size() / 2;
     out_.byte(kPartners);
     out_.number(half);
-    Task left = task, right = task;
+    ProofTask left = task, right = task;
     left.last = right.first = task.first + half;
     solve(left);
     solve(right);
   }
 
   /// Whether a direction is found for these two at one time.
-  bool apartAt(const Task& task, double t) {
+  bool apartAt(const ProofTask& task, double t) {
     Vector3d n;
-    return findDirection(setsOf(task, frameOf(task, Seen::byPartner), true), {t}, n);
+    return findDirection(setsOf(task, frameOf(task, DirectionFrame::partner), true), {t}, n);
   }
   double sizeOf(int body, std::int32_t node) const {
     const Geometry& geometry = moving_.geometry(body);
@@ -383,13 +382,13 @@ class Emitter {
     return geometry.unbounded || n.isLeaf() ? 0 : static_cast<double>(n.radius);
   }
 
-  void cutTimeOrPieces(Task task) {
+  void cutTimeOrPieces(ProofTask task) {
     const int partner = partners_[task.first];
     const double own = sizeOf(task.body, task.node), other = sizeOf(partner, task.partner_node);
     const bool leaves = own == 0 && other == 0;
     if (isEmpty(task)) return putEmpty();
     const bool wall = moving_.geometry(task.body).unbounded || moving_.geometry(partner).unbounded;
-    const bool time_left = task.cuts < kMostTimeCuts;
+    const bool time_left = task.cuts < kMaxTimeCuts;
     if (leaves && !time_left) return fail(task);
     if (time_left && beginsWithin(task, partner)) return cutTime(task);
     const bool apart = !wall && apartAt(task, task.middle()) && apartAt(task, task.begin) && apartAt(task, task.end);
@@ -407,13 +406,13 @@ class Emitter {
     const Geometry::Interval left = geometry.below[static_cast<std::size_t>(n.left())];
     out_.number(static_cast<std::size_t>(left.end - left.begin));
     node = n.left();
-    Task second = task;
+    ProofTask second = task;
     (cut_own ? second.node : second.partner_node) = n.right();
     solve(task);
     solve(second);
   }
   /// SOLID, with the points that show it.
-  bool putOutside(const Task& task) {
+  bool putOutside(const ProofTask& task) {
     const int partner = partners_[task.first];
     double t = task.begin;
     for (const Motion::Ignored& pair : moving_.motion().ignored) {
@@ -433,9 +432,9 @@ class Emitter {
     }
     return true;
   }
-  void cutTime(const Task& task) {
+  void cutTime(const ProofTask& task) {
     out_.byte(kTime);
-    Task before = task, after = task;
+    ProofTask before = task, after = task;
     before.end = after.begin = task.middle();
     ++before.cuts;
     ++after.cuts;
@@ -443,7 +442,7 @@ class Emitter {
     solve(after);
   }
   /// Whether the pair is ignored in a part of the task's time.
-  bool beginsWithin(const Task& task, int partner) const {
+  bool beginsWithin(const ProofTask& task, int partner) const {
     for (const Motion::Ignored& pair : moving_.motion().ignored) {
       if (pair.a == std::min(task.body, partner) && pair.b == std::max(task.body, partner)) {
         return task.begin < pair.until && pair.until < task.end;
@@ -453,7 +452,7 @@ class Emitter {
   }
   bool isSolid(int body) const { return moving_.geometry(body).shape->space() != nullptr; }
 
-  void fail(const Task& task) {
+  void fail(const ProofTask& task) {
     missing_ = "no hint was found that keeps '" + moving_.body(task.body).name + "' and '" +
                moving_.body(partners_[task.first]).name + "' apart around t = " + std::to_string(task.middle());
   }

@@ -94,7 +94,7 @@ const Pose& MovingWorld::pose(int body, int frame, double t) {
   return it->second = frame == 0 ? in_world : at.frames[static_cast<std::size_t>(frame)].inverse() * in_world;
 }
 
-/// Over the joints between the two: x turns about each joint at a rate w, r away from it, so that
+/// Bound over the joints between the two frames. The point x turns about each joint at a rate w, r away from it, so
 /// |x''| <= (sum w)^2 max r + ..., which is at most 2 (sum w)(sum w r + sum of slides' rates) + sum |q''| r.
 double MovingWorld::acceleration(int body, int frame, double t) {
   const std::vector<Pose>& poses = moment(t).frames;

@@ -21,10 +21,10 @@ using engine::Piece;
 using engine::PieceKind;
 using engine::TreeView;
 
-/// Signs count from this part of the largest numbers on: what the verifier's widened rotations make of them is a
-/// thousandth of it.
+/// A sign counts as sure from this part of the largest numbers on. The verifier's widened rotations change the numbers
+/// by a thousandth of that.
 constexpr double kSureSign = 1e-11;
-constexpr std::size_t kMostPointsOfPart = 16;  ///< points of a part
+constexpr std::size_t kMaxPointsOfPart = 16;  ///< points of a part
 
 /// The corners of a triangle, a column each.
 Matrix3d cornerColumns(const Geometry& geometry, std::size_t place) {
@@ -38,8 +38,8 @@ bool hasInside(const Geometry& geometry) {
   return geometry.shape->space() != nullptr;
 }
 
-/// How often the surface winds around x, by the half-line to that side; none where a sign is not sure. (The verifier
-/// has the formula, solid.cpp.)
+/// How often the surface winds around x, by the half-line to that side; none if a sign is not sure. (The verifier has
+/// the formula, solid.cpp.)
 std::optional<int> windsAround(const Geometry& solid, const Vector3d& x, int side) {
   const int k = side % 3, i = (k + 1) % 3, j = (k + 2) % 3;
   int number = 0;
@@ -112,7 +112,7 @@ class OutsideSearch {
     for (std::size_t place = 0; place < part.size(); ++place) {
       std::vector<std::size_t>& list = places[part[place]];
       if (list.empty()) order.push_back(part[place]);
-      if (list.size() < kMostPointsOfPart) list.push_back(place);
+      if (list.size() < kMaxPointsOfPart) list.push_back(place);
     }
     for (const std::size_t of : order) {
       bool shown = false;

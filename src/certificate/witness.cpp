@@ -24,12 +24,12 @@ using engine::PieceKind;
 using engine::TreeView;
 
 constexpr int kContact = 0x20, kCross = 0, kInside = 2, kNear = 4;
-/// Witnesses are so far from failing, in m: the first, if there is one. What a verifier's poses are off by grows with
-/// the chain, to some 1e-12 m after thirty joints.
+/// Least distance of a witness from failing, in m. The second one is tried if no witness has the first. The error of a
+/// verifier's poses grows with the chain, to some 1e-12 m after thirty joints.
 constexpr double kSure[] = {1e-9, 1e-11};
 
 /// One of the two pieces.
-struct Side {
+struct WitnessPiece {
   const Geometry& geometry;
   const TreeView& tree;
   const Piece& piece;
@@ -58,7 +58,7 @@ struct NamedPoint {
   std::vector<std::pair<std::size_t, std::uint32_t>> weights;
 };
 
-void put(const Side& side, const NamedPoint& point, ProofBytes& out) {
+void put(const WitnessPiece& side, const NamedPoint& point, ProofBytes& out) {
   out.number(side.number);
   if (!side.hasVertices()) {
     for (int k = 0; k < 3; ++k) out.real(point.x[k]);
@@ -73,7 +73,7 @@ void put(const Side& side, const NamedPoint& point, ProofBytes& out) {
 
 /// The combination of support points as a point that can be named.
 /// @param points  in the geometry's frame, with weights that sum to 1.
-NamedPoint nameCore(const Side& side, const std::vector<std::pair<Vec3, double>>& points) {
+NamedPoint nameCore(const WitnessPiece& side, const std::vector<std::pair<Vec3, double>>& points) {
   NamedPoint named;
   named.x.setZero();
   if (!side.hasVertices()) {
@@ -96,7 +96,7 @@ NamedPoint nameCore(const Side& side, const std::vector<std::pair<Vec3, double>>
   return named;
 }
 
-/// How far inside the piece x is, about; below 0: outside. Of pieces with an inequality.
+/// How far inside the piece x is, about; below 0: outside. Only for pieces that an inequality defines.
 double depthIn(const Piece& piece, const Vector3d& x) {
   const double* e = piece.size;
   const Vector3d d = x - Vector3d::Map(piece.center);
@@ -129,7 +129,7 @@ double volume(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
 }
 
 /// The edge of one triangle that crosses the other one best. @return how surely it does, a length; below 0: none.
-double crossing(const Side& a, const Side& b, int& edge) {
+double crossing(const WitnessPiece& a, const WitnessPiece& b, int& edge) {
   const Pose toB = b.pose.inverse() * a.pose;
   const std::vector<Vec3> own = a.vertices(), other = b.vertices();
   double best = -1;
@@ -158,7 +158,7 @@ double crossing(const Side& a, const Side& b, int& edge) {
 }
 
 /// Four vertices of the hull whose tetrahedron holds x.
-std::optional<std::array<std::size_t, 4>> tetrahedron(const Side& hull, const Vector3d& x, double sure) {
+std::optional<std::array<std::size_t, 4>> tetrahedron(const WitnessPiece& hull, const Vector3d& x, double sure) {
   const std::vector<Vec3> vertices = hull.vertices();
   struct Shifted {
     const std::vector<Vec3>& vertices;
@@ -174,8 +174,7 @@ std::optional<std::array<std::size_t, 4>> tetrahedron(const Side& hull, const Ve
     void subtract(baseline::DifferencePoint&) const {}
   };
   baseline::GjkResult found;
-  baseline::searchNearest(Shifted{vertices, Vec3(x[0], x[1], x[2])}, Vec3(1, 0, 0), 1e-12, 0.0, baseline::kInfinite,
-                          100, found);
+  baseline::searchNearest(Shifted{vertices, Vec3(x[0], x[1], x[2])}, Vec3(1, 0, 0), {1e-12, 0.0, 100}, found);
   if (!found.overlap || found.simplex.n != 4) return std::nullopt;
   // x must be so far from each face.
   Vector3d w[4];
@@ -214,7 +213,7 @@ struct CorePoints {
   NamedPoint a, b;
   double distance;
 };
-CorePoints nearestPoints(const Side& a, const Side& b) {
+CorePoints nearestPoints(const WitnessPiece& a, const WitnessPiece& b) {
   const Pose b_in_a = a.pose.inverse() * b.pose;
   baseline::DifferenceBody body{&a.tree, &a.piece, &b.tree, &b.piece, {}};
   for (int i = 0; i < 3; ++i) {
@@ -223,7 +222,7 @@ CorePoints nearestPoints(const Side& a, const Side& b) {
   }
   baseline::GjkResult found;
   const Vector3d guess = b_in_a.c.norm() > 1e-9 ? b_in_a.c : Vector3d(1, 0, 0);
-  baseline::gjk(body, Vec3(guess[0], guess[1], guess[2]), 1e-9, 0.0, 100, found);
+  baseline::gjk(body, Vec3(guess[0], guess[1], guess[2]), {1e-9, 0.0, 100}, found);
   baseline::Simplex& s = found.simplex;
   weigh(s);
   std::vector<std::pair<Vec3, double>> points_a, points_b;
@@ -236,8 +235,8 @@ CorePoints nearestPoints(const Side& a, const Side& b) {
   return points;
 }
 
-/// About, and not more than half of it where it is known.
-double inradius(const Side& side) {
+/// About the piece's inradius; if it is known, not more than half of it.
+double inradius(const WitnessPiece& side) {
   double least = side.piece.radius > 0 ? side.piece.radius : INFINITY;
   for (const double size : side.piece.size) {
     if (size > 0) least = std::min(least, size);
@@ -246,27 +245,27 @@ double inradius(const Side& side) {
 }
 
 /// The core's point, or the one of the rounded piece that is nearest to `towards` (geometry's frame). A little inside.
-NamedPoint rounded(const Side& side, NamedPoint core, const Vector3d& towards) {
+NamedPoint rounded(const WitnessPiece& side, NamedPoint core, const Vector3d& towards) {
   if (side.hasVertices()) return core;
   const Vector3d d = towards - core.x;
   if (side.piece.radius > 0 && d.norm() > 0) core.x += d * std::min(1.0, side.piece.radius / d.norm());
-  // The point is off by what its numbers are rounded by, for the verifier to 2^-64 m. Next to a cone's tip, where the
-  // sides of its inequality are small squares, that shows much sooner.
+  // The verifier rounds the point's numbers to 2^-64 m. Next to a cone's tip the sides of the inequality are small
+  // squares, so this rounding matters much sooner.
   const double inwards = std::min(0.1, (side.piece.kind == PieceKind::cone ? 1e-7 : 1e-13) + 1e-18 / inradius(side));
   const Vector3d centre = Vector3d::Map(side.piece.center);
   core.x = centre + (core.x - centre) * (1 - inwards);
   return core;
 }
 
-/// One piece against another one that is a little smaller than it is, both with their rounding: a point that these have
-/// in common is well within the larger one.
+/// One piece and another piece, the latter made a little smaller, both with their rounding radii. A common point of the
+/// two is well within the other piece as it is.
 struct Shrunk {
-  const Side &own, &other;
+  const WitnessPiece &own, &other;
   Pose other_in_own;
   Vector3d centre;  ///< inside of the other piece, in its frame
   double smaller;   ///< part of its size
 
-  Vector3d farthest(const Side& side, const Vector3d& u) const {
+  Vector3d farthest(const WitnessPiece& side, const Vector3d& u) const {
     const Vec3 core = baseline::supportPoint(side.tree, side.piece, Vec3(u[0], u[1], u[2]));
     return toEigen(core) + u * (side.piece.radius / u.norm());
   }
@@ -283,19 +282,19 @@ struct Shrunk {
   void subtract(baseline::DifferencePoint&) const {}
 };
 
-/// A point of the one piece that is well within the other one; none is found where they don't overlap enough.
-std::optional<NamedPoint> pointInside(const Side& own, const Side& other, double sure) {
+/// A point of one piece that is well within the other; none if they don't overlap enough.
+std::optional<NamedPoint> pointInside(const WitnessPiece& own, const WitnessPiece& other, double sure) {
   Vector3d centre = Vector3d::Map(other.piece.center);
   if (other.hasVertices()) {
     const std::vector<Vec3> vertices = other.vertices();
     centre.setZero();
     for (const Vec3& v : vertices) centre += toEigen(v) / static_cast<double>(vertices.size());
   }
-  // A cone's inequality is squared: what is so near its tip is lost in the verifier's last digits, 2^-64.
+  // A cone's inequality is squared: a point that near to its tip is lost in the verifier's last digits, 2^-64.
   const double less = (other.piece.kind == PieceKind::cone ? 1e-6 : 10 * sure / std::max(sure, inradius(other)));
   const Shrunk body{own, other, own.pose.inverse() * other.pose, centre, 1 - std::min(0.5, less)};
   baseline::GjkResult found;
-  baseline::searchNearest(body, Vec3(1, 0, 0), 1e-12, 0.0, baseline::kInfinite, 100, found);
+  baseline::searchNearest(body, Vec3(1, 0, 0), {1e-12, 0.0, 100}, found);
   if (!found.overlap || found.simplex.n != 4) return std::nullopt;
   weigh(found.simplex);
   std::vector<std::pair<Vec3, double>> points;
@@ -305,7 +304,7 @@ std::optional<NamedPoint> pointInside(const Side& own, const Side& other, double
 }
 
 /// @param sure  m, how far it is from failing.
-std::string witnessAt(const Side& a, const Side& b, double margin, double sure) {
+std::string witnessAt(const WitnessPiece& a, const WitnessPiece& b, double margin, double sure) {
   std::string text;
   ProofBytes out(text);
   if (margin <= 0 && a.isTriangle() && b.isTriangle()) {
@@ -322,7 +321,7 @@ std::string witnessAt(const Side& a, const Side& b, double margin, double sure) 
   const bool unbounded = baseline::unbounded(a.piece) || baseline::unbounded(b.piece);
   if (unbounded && (margin > 0 || baseline::unbounded(a.piece) == baseline::unbounded(b.piece))) return {};
   const CorePoints points = nearestPoints(a, b);
-  const auto seenFrom = [](const Side& from, const Side& of, const NamedPoint& p) {
+  const auto seenFrom = [](const WitnessPiece& from, const WitnessPiece& of, const NamedPoint& p) {
     return Vector3d(from.pose.R.transpose() * (of.pose.R * p.x + of.pose.c - from.pose.c));
   };
   if (margin > 0) {
@@ -335,7 +334,7 @@ std::string witnessAt(const Side& a, const Side& b, double margin, double sure) 
     return text;
   }
   for (const bool swap : {false, true}) {
-    const Side &own = swap ? b : a, &other = swap ? a : b;
+    const WitnessPiece &own = swap ? b : a, &other = swap ? a : b;
     if (other.isTriangle() || other.piece.kind == PieceKind::plane || baseline::unbounded(own.piece)) continue;
     NamedPoint x;
     if (baseline::unbounded(other.piece)) {
@@ -365,7 +364,7 @@ std::string witnessAt(const Side& a, const Side& b, double margin, double sure) 
 }  // namespace
 
 std::string findWitness(MovingWorld& world, const Meeting& meeting) {
-  const auto side = [&](int body, std::int32_t leaf, double t) -> Side {
+  const auto side = [&](int body, std::int32_t leaf, double t) -> WitnessPiece {
     const Geometry& geometry = world.geometry(body);
     const TreeView& tree = geometry.shape->view();
     const auto at = std::find(geometry.order.begin(), geometry.order.end(), leaf);

@@ -24,7 +24,7 @@ using engine::Piece;
 using engine::PieceKind;
 using engine::TreeView;
 
-/// A word of a statement: what is no printing character, and what would end the word, as two hexadecimal digits.
+/// A word of a statement. Characters that do not print, or would end the word, become two hexadecimal digits.
 std::string word(const std::string& name) {
   std::string text;
   for (const char c : name) {
@@ -190,7 +190,7 @@ std::string geometryText(const Geometry& geometry) {
   };
   const double* e = piece.size;
   const bool centred = Eigen::Vector3d::Map(piece.center).isZero(0);
-  // Of all other bounded shapes FCL's lie about their frames' origins. (Of unbounded ones it is the offset.)
+  // All other bounded shapes of FCL lie about their frames' origins. (The center of an unbounded piece is its offset.)
   FCL_ARTIC_ASSERT(centred || piece.kind == PieceKind::box || piece.kind == PieceKind::vertices ||
                    baseline::unbounded(piece));
   switch (piece.kind) {
@@ -286,7 +286,7 @@ std::string elementText(const Element& element) {
          "\n";
 }
 
-/// Balls anywhere: a form of text and a verifier that have no list of them cannot state it.
+/// Whether the geometry is a list of balls. Neither the text nor the verifier has such lists, so no world can state it.
 bool isCloud(const Geometry& geometry) {
   const TreeView& tree = geometry.shape->view();
   return tree.num_pieces > 0 && tree.pieces[0].kind == PieceKind::point &&
@@ -411,8 +411,8 @@ class ManagedWorld {
     }
     return nullptr;
   }
-  /// A world leaves out all bodies of two names: of links whose housings overlap it says nothing of their other parts
-  /// either, which the query checks.
+  /// A world leaves out all bodies of two names. So if two links' housings overlap, it leaves out their other parts
+  /// too, which the query checks.
   bool isPartOfLeftOut(const ManagedBody& a, const ManagedBody& b) const {
     if (a.attached || b.attached || !registry_.neighbours()) return false;
     const NeighbourFindings::Pair* const pair = registry_.neighbours()->find(a.link, b.link);

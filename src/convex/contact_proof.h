@@ -95,8 +95,8 @@ inline void combine(const DifferenceBody& body, const Simplex& s, Vec3& a, Vec3&
 /// A half-space holds a point of the other piece, or a plane lies between two of its points: known from support points
 /// alone. Each is off by eps at most, and its distance from the boundary, n.x - offset, is the difference point's n.w.
 inline bool certainlyTouchesUnbounded(const DifferenceBody& body, double radii, double eps, Vec3& point) {
-  const bool of_a = unbounded(*body.a);
-  const Piece &piece = of_a ? *body.a : *body.b, &other = of_a ? *body.b : *body.a;
+  const bool unbounded_a = unbounded(*body.a);
+  const Piece &piece = unbounded_a ? *body.a : *body.b, &other = unbounded_a ? *body.b : *body.a;
   const Vec3 n = unboundedNormal(body);
   DifferencePoint lowest, highest;
   body.support(n, lowest);
@@ -116,8 +116,8 @@ inline bool certainlyTouchesUnbounded(const DifferenceBody& body, double radii, 
       reach = -min(other.radius, -high);
     }
   }
-  const Vec3 x = of_a ? body.place(lowest.b) : lowest.a, y = of_a ? body.place(highest.b) : highest.a;
-  point = x + (y - x) * part - n * (of_a ? reach : -reach);
+  const Vec3 x = unbounded_a ? body.place(lowest.b) : lowest.a, y = unbounded_a ? body.place(highest.b) : highest.a;
+  point = x + (y - x) * part - n * (unbounded_a ? reach : -reach);
   return true;
 }
 
@@ -130,7 +130,7 @@ inline bool certainlyTouching(const DifferenceBody& body, double margin, double 
   const double radii = body.a->radius + body.b->radius + margin;
   if (unbounded(*body.a) || unbounded(*body.b)) return certainlyTouchesUnbounded(body, radii, eps, point);
   GjkResult g;
-  gjk(body, guess, 1e-12, 0.0, 64, g, start);
+  gjk(body, guess, {1e-12, 0.0, 64}, g, start);
   const auto witness = [&](const Simplex& s) {
     Vec3 a, b;
     combine(body, s, a, b);
@@ -182,7 +182,7 @@ inline bool certainlyTouching(const DifferenceBody& body, double margin, double 
   for (const Vec3& corner : corners) {
     shifted.shift = corner;
     GjkResult h;
-    gjk(shifted, guess, 1e-12, 0.0, 64, h, &g.simplex);
+    gjk(shifted, guess, {1e-12, 0.0, 64}, h, &g.simplex);
     if (h.lower > 0 || !originWeights(h.simplex)) return false;
     double sum = 0, size = 0;
     for (int i = 0; i < h.simplex.n; ++i) {

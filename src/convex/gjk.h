@@ -203,14 +203,42 @@ inline void unboundedGap(const DifferenceBody& body, double radii, GjkResult& ou
   out.distance = max(0.0, out.lower);
 }
 
+/// The accuracy of a search, and the conditions that end it.
+struct GjkOptions {
+  double accuracy;            ///< the distance is known to this part of the gap beyond `radii`
+  double radii;               ///< rounding radii and margin: cores nearer than this overlap
+  int max_iterations;         ///< support points that are asked for, at most
+  double enough = kInfinite;  ///< a direction is found along which the gap is larger
+};
+
+/// Whether a support point is one of the simplex: then it can't be brought nearer.
+inline bool holdsPoint(const Simplex& s, const DifferencePoint& p) {
+  bool known = false;
+  for (int i = 0; i < s.n; ++i) {
+    const bool x = s.v[i].w[0] == p.w[0], y = s.v[i].w[1] == p.w[1], z = s.v[i].w[2] == p.w[2];
+    known |= x & y & z;
+  }
+  return known;
+}
+
+/// Makes an answer that contradicts itself, by rounding, one that does not.
+inline void reconcile(double radii, GjkResult& out) {
+  // A flat simplex may claim 'inside' although a separating plane was seen: believe the plane.
+  if (out.overlap && out.lower > radii) {
+    out.overlap = false;
+    out.distance = max(out.lower, radii);
+  }
+  if (!out.overlap && out.distance <= radii && out.lower <= radii) out.overlap = true;
+}
+
 /// The search itself, in any bounded convex body with a function for its support points.
 /// @tparam kKeepNearest  the simplex is that of the distance, also where the last step made none that is nearer.
 ///   (Rounding can make of a flat simplex one that is far off.) For reports, at the expense of a copy each step.
-/// @param enough  a direction along which the gap is larger ends the search.
-/// The other parameters are gjk()'s.
+/// The parameters are gjk()'s.
 template <bool kKeepNearest = false, class ConvexBody>
-inline void searchNearest(const ConvexBody& body, const Vec3& guess, double relative, double radii, double enough,
-                          int max_iterations, GjkResult& out, const Simplex* start = nullptr) {
+inline void searchNearest(const ConvexBody& body, const Vec3& guess, const GjkOptions& options, GjkResult& out,
+                          const Simplex* start = nullptr) {
+  const double radii = options.radii;
   out.overlap = false;
   out.lower = -1e300;
   const double given = norm(guess);
@@ -240,7 +268,7 @@ inline void searchNearest(const ConvexBody& body, const Vec3& guess, double rela
     size2 = dot(p.w, p.w);
     v = p.w;
   }
-  while (!inside && out.iterations < max_iterations && !(out.lower > enough)) {
+  while (!inside && out.iterations < options.max_iterations && !(out.lower > options.enough)) {
     const double vv = dot(v, v);
     // The origin within rounding of a face of the simplex is as good as inside (aligned faces bring that about).
     if (vv <= 1e-30 * size2 || vv < radii * radii * (1 - 1e-13)) {
@@ -261,13 +289,8 @@ inline void searchNearest(const ConvexBody& body, const Vec3& guess, double rela
       best = v;
     }
     // Relative to the gap, not to the core distance.
-    if (length - out.lower <= relative * max(0.0, length - radii) + 1e-15 * length) break;
-    bool known = false;
-    for (int i = 0; i < s.n; ++i) {
-      const bool x = s.v[i].w[0] == p.w[0], y = s.v[i].w[1] == p.w[1], z = s.v[i].w[2] == p.w[2];
-      known |= x & y & z;
-    }
-    if (known) break;
+    if (length - out.lower <= options.accuracy * max(0.0, length - radii) + 1e-15 * length) break;
+    if (holdsPoint(s, p)) break;
     Simplex nearest;
     if constexpr (kKeepNearest) nearest = s;
     ++s.n;
@@ -285,24 +308,17 @@ inline void searchNearest(const ConvexBody& body, const Vec3& guess, double rela
     out.overlap = true;
     out.distance = 0;
   }
-  // A flat simplex may claim 'inside' although a separating plane was seen: believe the plane.
-  if (out.overlap && out.lower > radii) {
-    out.overlap = false;
-    out.distance = max(out.lower, radii);
-  }
-  if (!out.overlap && out.distance <= radii && out.lower <= radii) out.overlap = true;
+  reconcile(radii, out);
 }
 
 /// @param guess  direction from A to B to start with, any length but 0.
-/// @param relative  stop when the distance is known to this part of the gap beyond `radii`.
-/// @param radii  rounding radii and margin: cores nearer than this overlap.
 /// @param start  the simplex that was found for these pieces at another pose, to begin with instead; null or empty:
 /// none.
 template <bool kKeepNearest = false>
-inline void gjk(const DifferenceBody& body, const Vec3& guess, double relative, double radii, int max_iterations,
-                GjkResult& out, const Simplex* start = nullptr) {
-  if (unbounded(*body.a) || unbounded(*body.b)) return unboundedGap(body, radii, out);
-  searchNearest<kKeepNearest>(body, guess, relative, radii, kInfinite, max_iterations, out, start);
+inline void gjk(const DifferenceBody& body, const Vec3& guess, const GjkOptions& options, GjkResult& out,
+                const Simplex* start = nullptr) {
+  if (unbounded(*body.a) || unbounded(*body.b)) return unboundedGap(body, options.radii, out);
+  searchNearest<kKeepNearest>(body, guess, options, out, start);
 }
 
 }  // namespace FCL_ARTIC_ISA

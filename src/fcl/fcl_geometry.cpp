@@ -36,16 +36,10 @@ namespace {
 using engine::Piece;
 using engine::PieceKind;
 
-/// A BVHModel without its bounding volumes.
 template <class S>
-struct Mesh {
-  const fcl::Vector3<S>* vertices;
-  const fcl::Triangle* triangles;
-  std::size_t num_vertices, num_triangles;
-  bool solid;
-};
+using Mesh = MeshArrays<S>;
 
-/// A mesh that is a SolidMesh. (Most are BVHModels themselves, which one comparison shows.)
+/// Whether a mesh is a SolidMesh. (Most are plain BVHModels: one comparison of types shows that.)
 template <class BV>
 bool isSolid(const fcl::CollisionGeometry<typename BV::S>& geometry) {
   return typeid(geometry) != typeid(fcl::BVHModel<BV>) && dynamic_cast<const SolidMark*>(&geometry);
@@ -64,7 +58,8 @@ Mesh<typename BV::S> meshOf(const fcl::CollisionGeometry<typename BV::S>& geomet
           static_cast<std::size_t>(model.num_tris), isSolid<BV>(geometry)};
 }
 
-/// @return whether the geometry is one.
+}  // namespace
+
 template <class S>
 bool asMesh(const fcl::CollisionGeometry<S>& geometry, Mesh<S>& mesh) {
   switch (geometry.getNodeType()) {
@@ -88,6 +83,8 @@ bool asMesh(const fcl::CollisionGeometry<S>& geometry, Mesh<S>& mesh) {
       return false;
   }
 }
+
+namespace {
 
 template <class S>
 std::vector<Eigen::Vector3d> toDouble(const fcl::Vector3<S>* points, std::size_t n) {
@@ -115,7 +112,8 @@ double requireSize(double x, const char* what) {
   return x;
 }
 
-/// Halfspace and Plane: FCL's constructors normalise, but n and d are anybody's to set, and float's norm is float's.
+/// Reads a Halfspace or Plane. FCL's constructors normalise n, but anybody may set n and d afterwards, and a float's
+/// norm is rounded to float.
 template <class Shape>
 std::shared_ptr<const ShapeTree> readUnbounded(const fcl::CollisionGeometry<typename Shape::S>& geometry,
                                                PieceKind kind) {
@@ -124,7 +122,7 @@ std::shared_ptr<const ShapeTree> readUnbounded(const fcl::CollisionGeometry<type
   double d = shape.d;
   const std::optional<UnitVector> unit = UnitVector::within3Ulps(n);
   if (!unit) throw std::invalid_argument("its normal is zero or not finite");
-  if (unit->vector() != n) {  // its length, by way of the largest entry, as squares may vanish
+  if (unit->vector() != n) {  // divided by n's length, by way of the largest entry, as squares may vanish
     const double largest = n.cwiseAbs().maxCoeff();
     d = d / largest / (n / largest).norm();
     n = *unit;
@@ -164,8 +162,8 @@ class CellReader {
     return ShapeTree::fromPieces(std::move(cells));
   }
   /// Calls found(center, half a side) for each cell, until that returns false.
-  template <class Found>
-  void forEach(const Found& found) const {
+  template <class OnCell>
+  void forEach(const OnCell& found) const {
     if (const Node* root = tree_.getRoot()) visit(*root, Eigen::Vector3d::Zero(), root_half_, found);
   }
   /// Centres and half sizes are multiples of a power of two of the root's half size: exact, but for float resolutions'
@@ -175,10 +173,10 @@ class CellReader {
   }
 
  private:
-  template <class Found>
-  bool visit(const Node& node, const Eigen::Vector3d& center, double half, const Found& found) const {
+  template <class OnCell>
+  bool visit(const Node& node, const Eigen::Vector3d& center, double half, const OnCell& found) const {
     for (int k = 0; k < 3; ++k) {
-      // The cell's faces carry a rounding: those of two cells that touch must not leave a gap.
+      // The cell's faces are rounded, and two cells that touch must not leave a gap between them.
       const double reach = half + 0x1p-50 * root_half_;
       if (center[k] - reach > upper_[k] || center[k] + reach < lower_[k]) return true;
     }
@@ -213,26 +211,31 @@ std::shared_ptr<const ShapeTree> readCloud(const PointCloud& cloud) {
   return ShapeTree::fromPieces(std::move(balls));
 }
 
+/// The tree of a mesh, made once for all geometries with these bytes.
+template <class S>
+std::shared_ptr<const ShapeTree> readCached(const Mesh<S>& mesh, const fcl::CollisionGeometry<S>& geometry) {
+  static_assert(std::is_trivially_copyable<fcl::Triangle>::value && sizeof(fcl::Triangle) == 3 * sizeof(std::size_t) &&
+                    sizeof(fcl::Vector3<S>) == 3 * sizeof(S),
+                "equal bytes are equal meshes, and the other way round");
+  // Never destroyed: a query may come from the destructor of somebody's static object.
+  static MeshCache& cache = *new MeshCache(kMeshCacheBytes);
+  const MeshBytes bytes{&geometry,
+                        mesh.vertices,
+                        mesh.triangles,
+                        mesh.num_vertices * sizeof(fcl::Vector3<S>),
+                        mesh.num_triangles * sizeof(fcl::Triangle),
+                        sizeof(S),
+                        mesh.solid};
+  std::shared_ptr<const ShapeTree> tree = cache.find(bytes);
+  if (!tree) cache.keep(bytes, tree = readMesh(mesh));
+  return tree;
+}
+
 template <class S>
 std::shared_ptr<const ShapeTree> read(const fcl::CollisionGeometry<S>& geometry, bool cached) {
   Mesh<S> mesh;
   if (asMesh(geometry, mesh)) {
-    if (!cached) return readMesh(mesh);
-    static_assert(std::is_trivially_copyable<fcl::Triangle>::value &&
-                      sizeof(fcl::Triangle) == 3 * sizeof(std::size_t) && sizeof(fcl::Vector3<S>) == 3 * sizeof(S),
-                  "equal bytes are equal meshes, and the other way round");
-    // Never destroyed: a query may come from the destructor of somebody's static object.
-    static MeshCache& cache = *new MeshCache(kMeshCacheBytes);
-    const MeshBytes bytes{&geometry,
-                          mesh.vertices,
-                          mesh.triangles,
-                          mesh.num_vertices * sizeof(fcl::Vector3<S>),
-                          mesh.num_triangles * sizeof(fcl::Triangle),
-                          sizeof(S),
-                          mesh.solid};
-    std::shared_ptr<const ShapeTree> tree = cache.find(bytes);
-    if (!tree) cache.keep(bytes, tree = readMesh(mesh));
-    return tree;
+    return cached ? readCached(mesh, geometry) : readMesh(mesh);
   }
   Piece piece;
   switch (geometry.getNodeType()) {
@@ -530,6 +533,7 @@ RigidTransform requireRigid(const Eigen::Isometry3d& M, const std::string& what)
   return requireRigid(M, 1e-6, [&] { return what; });
 }
 
+template bool asMesh(const fcl::CollisionGeometry<double>&, MeshArrays<double>&);
 template std::shared_ptr<const ShapeTree> readGeometry(const fcl::CollisionGeometry<float>&);
 template std::shared_ptr<const ShapeTree> readGeometry(const fcl::CollisionGeometry<double>&);
 template std::shared_ptr<const ShapeTree> cachedGeometry(const fcl::CollisionGeometry<float>&);

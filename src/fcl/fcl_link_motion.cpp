@@ -2,12 +2,12 @@
 //
 // Bounds. Along the chain of the link, a point fixed in the geometry is
 //
-//   x_0(t) = sum over segments k of R_k(t) s_k(t),
+//   x_0(t) = sum over segments k of R_k(t) s_k(t).
 //
-// where segment k leads from one joint's origin to the next (the last one to x itself), s_k is its vector in the frame
-// it is attached to, and R_k the rotation of that frame. R_k is a product of constant rotations and of rotations about
-// fixed axes at constant rates r_j (the rate of a mimic joint is its master's times the multiplier), so with
-// W_k = sum of |r_j| over the revolute joints before segment k
+// Segment k leads from one joint's origin to the next (the last one to x itself). Its vector in the frame to which it
+// is attached is s_k. The rotation of that frame is R_k. It is a product of constant rotations and of rotations about
+// fixed axes at constant rates r_j (the rate of a mimic joint is its master's times the multiplier). Let W_k be the sum
+// of |r_j| over the revolute joints before segment k. Then
 //
 //   |R_k' s| <= W_k |s|,   |R_k'' s| <= W_k^2 |s|.
 //
@@ -19,11 +19,11 @@
 // D1 is 'sum of joint rates times lever arms', summed by segments instead of by joints. From time t on, the
 // displacement along the unit vector n during a further s <= 1 - t obeys
 //
-//   n . (x(t + s) - x(t)) <= s (n . x'(t) + D2 (1 - t) / 2)   and   <= s D1,
+//   n . (x(t + s) - x(t)) <= s (n . x'(t) + D2 (1 - t) / 2) and <= s D1.
 //
-// so the smaller factor bounds the whole rest of the step, which is what conservative advancement needs: it is not
-// asked again before it has advanced. n . x'(t) is affine in x, thus largest at a corner of a triangle or rectangle; a
-// sphere of radius r around adds r |angular velocity x n|.
+// So the smaller factor bounds the whole rest of the step. Conservative advancement needs this: it does not ask again
+// before it has advanced. The rate n . x'(t) is affine in x, so it is largest at a corner of a triangle or rectangle. A
+// sphere of radius r around these adds r |angular velocity x n|.
 //
 // FCL gets n from a difference of nearest points at distance d; rounding turns it by about 1e-16 / d. The directed
 // bound therefore carries kDirectionSlack * D1: down to d = 1e-10 D1 this covers the turn by far, and below that every
@@ -57,7 +57,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 // FCL's visitors call back only into FCL's own five motions and answer 0 for any other, which advancement reads as
-// "does not move". What they carry is protected; a derived class may name it, and so give pointers to the members.
+// "does not move". The members of a visitor are protected; a derived class may name them, and so give pointers to them.
 template <class BV>
 struct PeekVolume : fcl::TBVMotionBoundVisitor<BV> {
   using Visitor = fcl::TBVMotionBoundVisitor<BV>;

@@ -14,6 +14,7 @@
 #include <fcl/math/motion/spline_motion.h>
 #include <fcl/math/motion/translation_motion.h>
 
+#include "fcl/recorded_motion.h"
 #include "numerics/constants.h"
 #include "numerics/rotation.h"
 #include "numerics/shown.h"
@@ -31,7 +32,7 @@ std::string typeName(const std::type_info& type) {
   return name ? name.get() : type.name();
 }
 
-// FCL's motions keep what they are made of protected. A derived class may name it, and so give pointers to the members.
+// The members of FCL's motions are protected. A derived class may name them, and so give pointers to them.
 template <class S>
 struct PeekInterp : fcl::InterpMotion<S> {
   using Motion = fcl::InterpMotion<S>;
@@ -55,7 +56,7 @@ struct PeekSpline : fcl::SplineMotion<S> {
   static const fcl::Transform3<S>& current(const Motion& m) { return m.*(&PeekSpline::tf); }
 };
 
-/// Whose data are read. Spelled out only when something is wrong with them: that takes longer than reading them.
+/// The motion whose data are read. Its name is spelled out only for an error: that takes longer than reading the data.
 struct Name {
   const std::type_info& type;
   const char* part = "";
@@ -80,11 +81,11 @@ void requireLength(const Vector3d& v, const N& name, const char* what) {
                               (v.allFinite() ? " of more than 1e9 m" : " that is not finite"));
 }
 
-/// What readTransform() does.
+/// Does the work of readTransform().
 template <class S, class N>
 RigidTransform readRigid(const fcl::Transform3<S>& M, const N& name) {
-  constexpr double kMost = std::is_same<S, float>::value ? 1e-4 : 1e-6;
-  return requireRigid(Isometry3d(M.template cast<double>()), kMost, [&] { return spelled(name); });
+  constexpr double kMax = std::is_same<S, float>::value ? 1e-4 : 1e-6;
+  return requireRigid(Isometry3d(M.template cast<double>()), kMax, [&] { return spelled(name); });
 }
 
 MotionElement& addSlide(BodyMotion& motion, const Vector3d& from, const Vector3d& velocity) {
@@ -135,7 +136,7 @@ BodyMotion line(const RigidTransform& begin, const Vector3d& velocity) {
 /// most (angle^7 / 5040) |b| + (angle^6 / 720) |w| < angle^5 |o_| / 700, which for angle <= 1e-3 is 1.5e-18 |o_|.
 BodyMotion screw(const RigidTransform& begin, const Vector3d& o, const UnitVector& direction, double angle) {
   constexpr double kSmallAngle = 1e-3;
-  constexpr double kNoAngle = 1e-150;  // half of it may vanish, and its square is nothing
+  constexpr double kNoAngle = 1e-150;  // half of such an angle may be 0, and its square is
   const Vector3d& axis = direction;
   const Vector3d along = axis.dot(o) * axis, across = o - along, normal = axis.cross(o);
   const double half_cot = angle > kNoAngle ? angle / 2 / std::tan(angle / 2) : 1;  // times angle / 2
@@ -198,7 +199,7 @@ BodyMotion readInterp(const fcl::InterpMotion<S>& motion, const Name& name) {
   requireLength(velocity, name, "velocity");
   BodyMotion body = lineWithTurn(begin, o, velocity, axis, angle);
 
-  // What it performs must end at its end pose, but for the rounding in it; where velocities were never set, it doesn't.
+  // The motion must end at FCL's end pose, but for the rounding in it. If velocities were never set, it doesn't.
   const double close = std::is_same<S, float>::value ? 1e-3 : 1e-5;
   const Isometry3d reached = body.pose(1);
   const double size = begin.translation().norm() + end.translation().norm() + o.norm();
@@ -247,7 +248,8 @@ BodyMotion readSpline(const fcl::SplineMotion<S>& motion, const Name& name) {
     require(rotations[i].allFinite() && rotations[i].cwiseAbs().maxCoeff() <= 1e5, name,
             "has a control point of rotation that is not finite or of more than 1e5 rad");
   }
-  // What the constructor with control points derives from them must be there, and a rotation as the present one.
+  // The values that the constructor derives from the control points must be there, and the present pose must have a
+  // rotation.
   const auto isSquareOf = [](S square, const fcl::Vector3<S>& v) {
     return std::abs(square - v.squaredNorm()) <= S(1e-5) * v.squaredNorm();
   };
@@ -266,7 +268,7 @@ BodyMotion readSpline(const fcl::SplineMotion<S>& motion, const Name& name) {
   return body;
 }
 
-/// Takes the author's word, after a look at whether it is one: three poses are rigid and within the bounds.
+/// Believes the author, after a check that three poses are rigid and within the bounds.
 BodyMotion readBounded(const BoundedMotion& motion, const Name& name) {
   const BoundedMotion::Bounds bounds = motion.bounds(0, 1);
   const bool derivatives = motion.hasDerivatives();
@@ -328,6 +330,7 @@ BodyMotion readMotion(const fcl::MotionBase<S>& motion) {
   if (type == typeid(fcl::SplineMotion<S>)) return readSpline(static_cast<const fcl::SplineMotion<S>&>(motion), name);
   if constexpr (std::is_same<S, double>::value) {
     if (type == typeid(FclLinkMotion)) return bodyMotion(static_cast<const FclLinkMotion&>(motion));
+    if (type == typeid(RecordedMotion)) return static_cast<const RecordedMotion&>(motion).motion();
   }
   if (const auto* bounded = dynamic_cast<const BoundedMotion*>(&motion)) return readBounded(*bounded, name);
   throw std::invalid_argument(spelled(name) +

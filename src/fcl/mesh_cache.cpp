@@ -59,7 +59,7 @@ void MeshCache::keep(const MeshBytes& mesh, std::shared_ptr<const ShapeTree> tre
   if (bytes_ > most_bytes_) makeRoom();
 }
 
-/// Drops what was used longest ago until a quarter is free, so that this is rare.
+/// Drops the entries that were used longest ago until a quarter of the cache is free, so that this is rare.
 void MeshCache::makeRoom() {
   std::vector<std::pair<std::uint64_t, const void*>> by_age;
   for (const auto& [mesh, entry] : entries_) by_age.emplace_back(entry->used.load(std::memory_order_relaxed), mesh);

@@ -22,7 +22,7 @@ namespace {
   throw std::runtime_error("cannot write " + what + ": " + std::strerror(errno));
 }
 
-/// @throws std::runtime_error saying what it is, unless it is a regular file.
+/// @throws std::runtime_error naming the kind of file, unless it is a regular file.
 void requireRegular(const std::string& path, const struct stat& status) {
   if (S_ISREG(status.st_mode)) return;
   const char* const kind = S_ISDIR(status.st_mode)    ? "a directory"
@@ -78,7 +78,7 @@ bool syncFolder(const std::filesystem::path& folder) {
   return at.good() && (::fsync(at.number()) == 0 || errno == EINVAL);
 }
 
-/// A regular file that is written as a whole beside the one whose place it takes. Not kept: it goes away again.
+/// A regular file that is written as a whole beside the file that it replaces. If it is not kept, it is removed.
 class FileAside {
  public:
   /// Writes it, down to the disk.
@@ -159,8 +159,8 @@ std::string read(const std::string& path) {
 std::filesystem::path targetOf(const std::filesystem::path& path) {
   std::filesystem::path target = path;
   std::error_code error;
-  constexpr int kMostLinks = 40;  // Linux follows no more
-  for (int k = 0; k < kMostLinks && std::filesystem::is_symlink(std::filesystem::symlink_status(target, error)); ++k) {
+  constexpr int kMaxLinks = 40;  // Linux follows no more
+  for (int k = 0; k < kMaxLinks && std::filesystem::is_symlink(std::filesystem::symlink_status(target, error)); ++k) {
     const std::filesystem::path next = std::filesystem::read_symlink(target, error);
     if (error) break;
     target = target.parent_path() / next;
@@ -183,8 +183,8 @@ void writeTogether(const std::vector<File>& files) {
     Descriptor to(::open(file.path.c_str(), O_WRONLY | O_CLOEXEC));
     if (!to.good() || !writeAll(to, file.content) || !to.close()) failToWrite("'" + file.path + "'");
   }
-  // From here on what was there is replaced. The last of the old ones goes first, so that at no time, also after a
-  // power cut, an old file stands beside a new one before it.
+  // From here on old files are replaced. The last of the old ones is removed first. So at no time, even after a power
+  // cut, an old file stands behind a new one in the list.
   for (std::size_t i = all.size(); i-- > 1;) all[i].removeOld();
   for (FileAside& one : all) one.takePlace();
 }

@@ -87,9 +87,9 @@ Groups join(const std::vector<Corners>& triangles, std::size_t corners) {
   return groups;
 }
 
-/// Calls visit(low, high, upward, downward) for each edge: its corners, and how many triangles pass it from the one
-/// with the lower number to the other, and the other way. A triangle with two corners in one place has no area and, as
-/// a sum of edges, no border.
+/// Calls visit(low, high, upward, downward) for each edge. `low` and `high` are its corners, `upward` counts the
+/// triangles that pass it from `low` to `high`, `downward` the others. A triangle with two corners in one place has no
+/// area and, as a sum of edges, no border.
 template <class F>
 void forEdges(const std::vector<Corners>& triangles, std::size_t corners, const F& visit) {
   std::vector<Index> first(corners + 1, 0);

@@ -11,10 +11,10 @@ using engine::Node;
 using engine::PieceKind;
 
 /// A node gets a hull, of at most kVertices vertices, if its depth is at most kDepth and its number of triangles
-/// between kFewestTriangles and kMostTriangles. Measured on the UR5's free motions: depth 4 takes 1.2 times as long, 32
+/// between kFewestTriangles and kMaxTriangles. Measured on the UR5's free motions: depth 4 takes 1.2 times as long, 32
 /// vertices 1.7 times; larger numbers of triangles gain nothing and take twice as long to build.
 constexpr int kDepth = 5;
-constexpr int kFewestTriangles = 24, kMostTriangles = 2048;
+constexpr int kFewestTriangles = 24, kMaxTriangles = 2048;
 constexpr std::size_t kVertices = 64;
 
 /// Adds the corners of all triangles below a node. @return their number.
@@ -48,7 +48,7 @@ ConvexParts::ConvexParts(const engine::TreeView& whole) : view_(whole) {
         const int triangles = gather(whole, node, points);
         if (triangles < kFewestTriangles) continue;
         next.push_back(node);
-        if (triangles > kMostTriangles) continue;
+        if (triangles > kMaxTriangles) continue;
         const OuterHull hull = makeOuterHull(points, kVertices, kVertices);
         if (hull.vertices.empty()) continue;
         part_of_node_[static_cast<std::size_t>(node)] = static_cast<std::int16_t>(parts_.size());

@@ -20,10 +20,10 @@ using engine::InnerBalls;
 using engine::Node;
 using engine::PieceKind;
 
-/// Points looked at in a mesh, and in its smallest part at least.
+/// Numbers of points that are tried in a mesh, and at least in its smallest part.
 constexpr int kSamples = 400, kFewestSamples = 40;
-/// Parts that get balls: at most kMostParts, none smaller than kLeastPart of the largest.
-constexpr std::size_t kMostParts = 8;
+/// Parts that get balls: at most kMaxParts, none smaller than kLeastPart of the largest.
+constexpr std::size_t kMaxParts = 8;
 constexpr double kLeastPart = 0.1;
 /// Steps by which a ball is moved away from where it touches.
 constexpr int kMoveSteps = 6;
@@ -43,7 +43,8 @@ struct Ball {
   double weight;  ///< of the space around its centre
 };
 
-/// Points spread through what a part encloses: where a grid's lines along its longest axis run inside.
+/// Adds points spread through the space that a part encloses: on lines of a grid along its longest axis, where they run
+/// inside.
 void addSamples(const EnclosedSpace& space, std::int32_t part, const Vector3d& lo, const Vector3d& size, double count,
                 std::vector<Ball>& samples) {
   int axis;
@@ -76,7 +77,7 @@ void addSamples(const EnclosedSpace& space, std::int32_t part, const Vector3d& l
   }
 }
 
-/// Moves a ball away from where it touches as long as that makes it larger by half of the way at least.
+/// Moves a ball away from the point where it touches, as long as that makes it larger by at least half of the way.
 void enlarge(const EnclosedSpace& space, Ball& ball) {
   Vector3d nearest;
   ball.radius = space.clearance(ball.part, ball.center, nearest);
@@ -109,12 +110,12 @@ std::vector<Ball> choose(const EnclosedSpace& space, std::vector<Ball>& samples)
     }
     return sum;
   };
-  // What a ball would add only ever gets less: the first in the queue, weighed anew, is the best when it stays the
-  // first.
+  // The gain of a ball only ever decreases. So if the first ball in the queue, weighed anew, stays first, it is the
+  // best.
   std::priority_queue<std::pair<double, std::size_t>> queue;
   for (std::size_t i = 0; i < samples.size(); ++i) queue.emplace(weightOf(samples[i]), i);
   std::vector<Ball> chosen;
-  while (!queue.empty() && chosen.size() < static_cast<std::size_t>(InnerBalls::kMost)) {
+  while (!queue.empty() && chosen.size() < static_cast<std::size_t>(InnerBalls::kMax)) {
     const auto [weight, index] = queue.top();
     queue.pop();
     const double now = weightOf(samples[index]);
@@ -233,7 +234,7 @@ std::unique_ptr<const BallsInMesh> BallsInMesh::find(const engine::TreeView& mes
                    [](const Sized& a, const Sized& b) { return a.size.norm() > b.size.norm(); });
   double volume = 0;
   std::size_t kept = 0;
-  while (kept < std::min(kMostParts, sized.size()) && sized[kept].size.norm() >= kLeastPart * sized[0].size.norm()) {
+  while (kept < std::min(kMaxParts, sized.size()) && sized[kept].size.norm() >= kLeastPart * sized[0].size.norm()) {
     volume += sized[kept++].size.prod();
   }
   std::vector<Ball> samples;
@@ -252,7 +253,7 @@ std::unique_ptr<const BallsInMesh> BallsInMesh::find(const engine::TreeView& mes
   InnerBalls& balls = found->balls_;
   balls.count = static_cast<std::int32_t>(chosen.size());
   std::vector<std::int32_t> number(static_cast<std::size_t>(parts.count), -1);
-  for (std::int32_t i = 0; i < InnerBalls::kMost; ++i) {
+  for (std::int32_t i = 0; i < InnerBalls::kMax; ++i) {
     const bool is_one = i < balls.count;
     const Ball ball = is_one ? chosen[static_cast<std::size_t>(i)] : Ball{Vector3d::Zero(), -1e30, -1, 0};
     for (int k = 0; k < 3; ++k) balls.center[k][i] = ball.center[k];

@@ -32,8 +32,8 @@ struct Segment {
   double length() const { return (p1 - p0).norm(); }
 };
 
-/// Squares of distances from a segment as it is stored. Rounding apart never too small: those from any point of the
-/// segment would do.
+/// Squares of distances from a segment as it is stored. Apart from rounding, none is too small: the distance from any
+/// point of the segment is an upper bound.
 class SquareDistance {
  public:
   explicit SquareDistance(const Segment& segment) : p0_(segment.p0), d_(segment.p1 - segment.p0) {
@@ -63,8 +63,8 @@ double volume(const Segment& segment, double r) {
   return r * r * (segment.length() + 4.0 / 3 * r);
 }
 
-/// The volume that holds the balls of this radius about all points; infinite where it is not less than `least`, which a
-/// few of the points may say. They go to the front, as they most likely say so of the next segment too.
+/// The volume that holds the balls of this radius about all points; infinite if it is not less than `least`. A few
+/// points may show that. They move to the front, as they most likely show it for the next segment too.
 double volumeBelow(double least, const Segment& segment, Points& points, double radius) {
   const SquareDistance square(segment);
   double most = -1, v = 0;
@@ -90,8 +90,8 @@ Matrix3d principalAxes(const Points& points) {
   return Eigen::SelfAdjointEigenSolver<Matrix3d>(covariance).eigenvectors();
 }
 
-/// Along the last of three axes, through the middle of the extents across it; the ends as far out as the round caps
-/// demand: a point at height z and distance c from the line needs an end at z - sqrt(r^2 - c^2) or beyond.
+/// A segment along the last of three axes, through the middle of the extents across it. Its ends are as far out as the
+/// round caps demand: a point at height z and distance c from the line needs an end at z - sqrt(r^2 - c^2) or beyond.
 Segment alongAxis(const Matrix3d& axes, const Points& points) {
   Vector3d lo = Vector3d::Constant(kInfinity), hi = -lo;
   for (const Vector3d& x : points) {
@@ -115,7 +115,7 @@ Segment alongAxis(const Matrix3d& axes, const Points& points) {
   return {axes * (middle + Vector3d(0, 0, bottom)), axes * (middle + Vector3d(0, 0, top))};
 }
 
-/// The few points that a good segment depends on, about: the farthest ones along directions all around.
+/// About those few points on which a good segment depends: the farthest ones along directions all around.
 Points extremePoints(const Points& points) {
   if (points.size() <= static_cast<std::size_t>(kExtremeDirections)) return points;
   const PointLanes lanes(points, 1 + points.size() / kSampled);
@@ -165,7 +165,7 @@ LineSweptSphere encloseInLineSweptSphere(const std::vector<Eigen::Vector3d>& poi
     const Matrix3d turned = (Matrix3d() << axes.col(2), axes.col(0), axes.col(1)).finished();
     axes = turned;
   }
-  // Nothing above is relied on but reach(), of all points, and its rounding.
+  // The proof rests only on reach() over all points, and on its rounding.
   r = r * (1 + 1e-12) + 1e-15 * (best.p0.norm() + best.p1.norm());
   return {best.p0[0], best.p0[1], best.p0[2], best.p1[0], best.p1[1], best.p1[2], r};
 }

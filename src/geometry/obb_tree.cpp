@@ -23,9 +23,9 @@ using engine::Piece;
 using engine::PieceKind;
 using engine::TreeView;
 
-/// What a half size is longer than its points need, as a part of the coordinates and of the box: the axes are off by
-/// single precision's rounding, 2^-24 an entry, so that e_j . e_k differs from 0 or 1 by less than 2^-21. The test
-/// takes the box for the parallelepiped along its axes as well as for the slabs across them; each holds the other when
+/// By this part of the coordinates and of the box, a half size is longer than its points need. The axes are off by
+/// single precision's rounding, 2^-24 an entry, so e_j . e_k differs from 0 or 1 by less than 2^-21. The test takes the
+/// box for the parallelepiped along its axes as well as for the slabs across them. Each of the two holds the other if
 /// the half sizes grow by this part of their sum. Rounding of the center and of the half sizes to float is less than
 /// it, too.
 constexpr double kSlack = 0x1p-20;
@@ -75,7 +75,7 @@ class BoxAxes {
   /// The coordinate axes.
   BoxAxes() : BoxAxes(Matrix3d::Identity()) {}
   /// @param axes  its columns, of unit length.
-  /// @return none where they are not orthonormal to single precision, or not finite.
+  /// @return none if they are not orthonormal to single precision, or not finite.
   static std::optional<BoxAxes> within21Bits(const Matrix3d& axes) {
     const BoxAxes stored(axes);
     // Products of floats are exact, and their sums to 2^-51.
@@ -112,8 +112,8 @@ BoxAxes principalAxes(const Vector3d* first, const std::uint32_t* order, std::si
   return BoxAxes::within21Bits(solver.eigenvectors().rowwise().reverse()).value_or(BoxAxes());
 }
 
-/// Of one triangle: its longest edge, and its normal. Where the corners are in a line, what is computed for a normal is
-/// the residue of rounding, which may lie along the edge: then any direction across it will do.
+/// The axes of one triangle's box: along its longest edge, and along its normal. If the corners are in a line, the
+/// computed normal is a residue of rounding, which may lie along the edge. Then any direction across the edge will do.
 BoxAxes axesOf(const Vector3d* v) {
   Vector3d edge = v[1] - v[0];
   for (const Vector3d& e : {Vector3d(v[2] - v[1]), Vector3d(v[0] - v[2])}) {
@@ -220,7 +220,8 @@ void ObbTree::readFeatures(const TreeView& body) {
   }
 }
 
-/// Top down: split at the mean across the longest axis, at the median where that parts nothing (Gottschalk 1996).
+/// Top down: split at the mean across the longest axis, or at the median if the mean separates nothing (Gottschalk
+/// 1996).
 void ObbTree::buildNodes() {
   const std::size_t n = triangles_.size();
   std::vector<Vector3d> corners(3 * n), middles(n);

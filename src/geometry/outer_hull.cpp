@@ -14,10 +14,11 @@
 namespace fcl_artic {
 namespace {
 
-/// A body with more points than this, or more different ones, must be a whole scene: it gets no hull.
+/// A body with more points than kMaxPoints, or more different ones than kMaxDifferent, must be a whole scene: it gets
+/// no hull.
 constexpr std::size_t kMaxPoints = 1000000, kMaxDifferent = 60000;
 constexpr int kHullDirections = 32;
-/// Points that are nearer to the hull than this part of the body's size are left to its radius.
+/// The hull grows until all points are within this part of the body's size; its radius covers the rest.
 constexpr double kGoodEnough = 0.002;
 
 /// The points, each once.
@@ -29,7 +30,7 @@ std::vector<Eigen::Vector3d> differentPoints(std::vector<Eigen::Vector3d> points
   return points;
 }
 
-/// How far points are from the hull of a few vertices, from above.
+/// Upper bounds of points' distances from the hull of a few vertices.
 class HullDistance {
  public:
   HullDistance() {
@@ -46,7 +47,7 @@ class HullDistance {
     view_.vertices = packed_.data();
     ++piece_.num_vertices;
   }
-  /// The distance of p from above: nearly the least where it exceeds `enough`, and else any value up to that.
+  /// An upper bound of p's distance: nearly the distance if that exceeds `enough`, else any value up to `enough`.
   double operator()(const Eigen::Vector3d& p, double enough) {
     // Neighbours in a mesh are nearest to the same few vertices.
     const double guess = last_.n == 3 ? distanceOfTriangle(p) : INFINITY;
@@ -54,7 +55,7 @@ class HullDistance {
     body_.pose.c = baseline::Vec3(p.data());
     const Eigen::Vector3d direction = p - sum_ / piece_.num_vertices;
     baseline::GjkResult g;
-    baseline::gjk(body_, baseline::Vec3(direction.data()), 1e-3, enough * (1 - 1e-9), 48, g);
+    baseline::gjk(body_, baseline::Vec3(direction.data()), {1e-3, enough * (1 - 1e-9), 48}, g);
     baseline::originWeights(g.simplex);
     last_ = g.simplex;
     return std::min(guess, distanceOfCombination(p));
@@ -66,8 +67,8 @@ class HullDistance {
     baseline::nearestOnTriangle(last_.v[0].a - x, last_.v[1].a - x, last_.v[2].a - x).store(last_.weight);
     return distanceOfCombination(p);
   }
-  /// From the convex combination of vertices that a search ended with, wherever that was; from one of them should the
-  /// weights, which nothing rests on elsewhere, make no such combination.
+  /// p's distance from the convex combination of vertices with which a search ended, wherever that is. If the weights
+  /// are no convex combination (nothing else rests on them), p's distance from the nearest of the vertices.
   double distanceOfCombination(const Eigen::Vector3d& p) const {
     Eigen::Vector3d w = Eigen::Vector3d::Zero();
     double sum = 0, nearest = INFINITY;
@@ -108,8 +109,8 @@ OuterHull makeOuterHull(const std::vector<Eigen::Vector3d>& all_points, std::siz
     hull.vertices.push_back(points[point]);
     distance.add(points[point]);
   };
-  // From a few points all around on, the one that is farthest from the hull is the next vertex. Distances only shrink
-  // as the hull grows: those in the heap are upper bounds, and only its top needs to be looked at again.
+  // The hull begins with a few points all around. The point that is farthest from it is the next vertex. Distances only
+  // shrink as the hull grows, so those in the heap are upper bounds, and only its top is computed again.
   const PointLanes lanes(points);
   std::set<std::size_t> first;
   for (const Eigen::Vector3d& direction : spreadDirections(kHullDirections)) {

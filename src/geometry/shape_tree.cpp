@@ -26,8 +26,8 @@ using engine::Node;
 using engine::Piece;
 using engine::PieceKind;
 
-/// So that three coordinates each are counted in 32 bits.
-constexpr std::size_t kMostHullPoints = 500000000;
+/// With this number, three coordinates for each point are counted in 32 bits.
+constexpr std::size_t kMaxHullPoints = 500000000;
 
 /// Two floats above the nearest to x: surely not below x, whatever the rounding mode.
 float roundUpToFloat(double x) {
@@ -82,7 +82,7 @@ class Builder {
   }
 
  private:
-  /// Median split across the longest side: as good as a surface area heuristic here (measured) and balanced, so that
+  /// Median split across the longest side. It is as good as a surface area heuristic here (measured), and balanced, so
   /// recursion is shallow whatever the input.
   void build(std::size_t me, std::size_t begin, std::size_t end) {
     if (end - begin == 1) {
@@ -230,7 +230,7 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromTriangle(const Eigen::Vector3d& 
 
 std::shared_ptr<const ShapeTree> ShapeTree::fromHull(const std::vector<Eigen::Vector3d>& points) {
   if (points.empty()) throw std::invalid_argument("it has no vertex");
-  if (points.size() > kMostHullPoints) throw std::invalid_argument("it has too many vertices");
+  if (points.size() > kMaxHullPoints) throw std::invalid_argument("it has too many vertices");
   requirePoints(points);
   auto tree = std::make_shared<ShapeTree>(Private());
   tree->outer_ = tree->hulls_.add(points, 0);
@@ -298,7 +298,8 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromPieces(std::vector<Piece> pieces
   return tree;
 }
 
-/// One piece around a body of many: a hull of few vertices, grown so far that it holds all points.
+/// If the body has several pieces, makes one piece around it: a hull of few vertices, grown so far that it holds all
+/// points.
 void ShapeTree::makeOuter(const std::vector<Eigen::Vector3d>& points) {
   if (pieces_.size() == 1) {
     view_.outer = pieces_.data();

@@ -34,9 +34,9 @@ Vector3d nearestOfEdge(const Vector3d& a, const Vector3d& b, const Vector3d& x) 
   return square > 0 ? Vector3d(a + std::clamp((x - a).dot(along) / square, 0.0, 1.0) * along) : a;
 }
 
-/// Lower bound of x's distance from a triangle. The direction to the nearest point is known badly for an x that is
-/// near, and so is that point for a triangle with hardly any area: the normal, and the edges' nearest points. Any
-/// direction is as right as another.
+/// Lower bound of x's distance from a triangle. If x is near, the direction to the nearest point is known badly, so the
+/// normal is tried. If the triangle has hardly any area, the nearest point is known badly too, so the edges' nearest
+/// points are tried. Any direction gives a lower bound.
 double surelyApart(const MeshTriangle& t, const Vector3d& x, Vector3d& nearest) {
   nearest = nearestPoint(t, x);
   double most = clearanceOf(t, x, nearest);
@@ -53,7 +53,7 @@ double surelyApart(const MeshTriangle& t, const Vector3d& x, Vector3d& nearest) 
   return most;
 }
 
-/// A direction, of some length up to 1, that no face of a mesh made by people is likely to have.
+/// A vector of some length up to 1. No face of a mesh that people made is likely to have its direction.
 Vector3d someDirection(std::uint32_t number) {
   Vector3d d;
   std::uint32_t bits = number * 2654435761u + 12345u;
@@ -106,7 +106,8 @@ SolidSpace::Side SolidSpace::sideOf(const Vector3d& x, double error, Vector3d& n
   const Node& root = mesh_.nodes[0];
   if (clearanceOf(root, x) > error) return Side::outside;
   const double clearance = this->clearance(x, nearest);
-  // All points nearer than that are on one side of the surface, x and what it stands for among them.
+  // All points nearer to x than the clearance are on one side of the surface. So is the point that x stands for,
+  // `error` away.
   const double room = clearance - error;
   if (!(room > 64 * kMeshUlp * x.norm())) return Side::unknown;
   for (int trial = 0; trial < kTrials; ++trial) {
@@ -122,7 +123,7 @@ SolidSpace::Side SolidSpace::sideOf(const Vector3d& x, double error, Vector3d& n
 SurfacePoints::SurfacePoints(const engine::TreeView& tree) {
   if (tree.num_pieces == 0 || !(tree.nodes[0].radius < engine::kUnbounded)) return;
   std::vector<bool> begun;
-  // Far from each other: where one of them is too near the other surface another one may not be.
+  // Points far from each other: if one of them is too near the other surface, another one may not be.
   const auto add = [&](std::size_t number, const Vector3d& x) {
     static const Vector3d kWays[kPerPart] = {{1, 0.6, 0.3}, {-1, -0.6, -0.3}, {-0.5, 0.9, -0.8}, {0.5, -0.9, 0.8}};
     Part& part = parts_[number];
@@ -162,11 +163,11 @@ SurfacePoints::SurfacePoints(const engine::TreeView& tree) {
 
 namespace {
 
-/// One body's points seen from the other, in whose tree frame they are up to an error.
-class Seen {
+/// One body's points as seen from the other, in the other's tree frame, up to an error.
+class SeenPoints {
  public:
   /// @param inverse  points of A seen from B.
-  Seen(const PairPose& pose, bool inverse) : inverse_(inverse), error_(pose.error) {
+  SeenPoints(const PairPose& pose, bool inverse) : inverse_(inverse), error_(pose.error) {
     R_ = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.R);
     c_ = Vector3d::Map(pose.c);
   }
@@ -175,13 +176,13 @@ class Seen {
       error = error_;
       return R_ * p + c_;
     }
-    // The place y of a point is as wrong as what it is from where it is seen: R y + c is y's place up to error_, rigid
-    // motions keep distances.
+    // Rigid motions keep distances, so the error of y is that of its image R y + c, which is known up to error_, from
+    // p.
     Vector3d y = R_.transpose() * (p - c_);
     error = error_ + (R_ * y + c_ - p).norm() * (1 + 1e-9);
     return y;
   }
-  /// A direction of where they are seen from, in their own tree frame.
+  /// A direction in the other body's frame, turned back into the points' own tree frame.
   Vector3d back(const Vector3d& d) const { return inverse_ ? Vector3d(R_ * d) : Vector3d(R_.transpose() * d); }
 
  private:
@@ -193,7 +194,8 @@ class Seen {
 
 /// Parts of one body whose first points may lie in the box of a solid that they are seen from.
 template <class F>
-void forPartsWithin(const SurfacePoints& points, const engine::TreeView& solid, const Seen& seen, const F& visit) {
+void forPartsWithin(const SurfacePoints& points, const engine::TreeView& solid, const SeenPoints& seen,
+                    const F& visit) {
   const std::vector<Node>& tree = points.tree();
   if (tree.empty()) return;
   const Node& root = solid.nodes[0];
@@ -205,7 +207,7 @@ void forPartsWithin(const SurfacePoints& points, const engine::TreeView& solid, 
     const Vector3d lo = Eigen::Vector3f::Map(node.lo).cast<double>(), hi = Eigen::Vector3f::Map(node.hi).cast<double>();
     double error;
     const Vector3d middle = seen.point(0.5 * (lo + hi), error);
-    // A ball around the node's box: with so few parts in most bodies it need not be tight.
+    // A ball around the node's box. Most bodies have few parts, so it need not be tight.
     const double reach = static_cast<double>(node.radius) * (1 + 1e-9) + error;
     bool apart = false;
     for (int k = 0; k < 3; ++k) apart = apart || middle[k] - reach > root.hi[k] || middle[k] + reach < root.lo[k];
@@ -223,7 +225,7 @@ void forPartsWithin(const SurfacePoints& points, const engine::TreeView& solid, 
 /// @param of_b  the parts are B's and the solid is A.
 void partsWithin(const SurfacePoints& points, const engine::Body& solid, const PairPose& pose, bool of_b,
                  Containment& found) {
-  const Seen seen(pose, !of_b);
+  const SeenPoints seen(pose, !of_b);
   forPartsWithin(points, *solid.tree, seen, [&](const SurfacePoints::Part& part) {
     for (const Vector3d& p : part.points) {
       double error;

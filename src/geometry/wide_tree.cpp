@@ -9,8 +9,8 @@ using engine::WideNode;
 
 constexpr std::size_t kChildren = 8;
 
-/// The nodes below `top`, eight at most: of those that have any, the largest one gives way to its children. (Those of
-/// the least expected visits, by a dynamic program, are not visited less often.)
+/// The nodes below `top`, eight at most. As long as there is room, the largest node with children is replaced by its
+/// children. (Nodes that a dynamic program chooses for the fewest expected visits are visited no less often.)
 std::vector<const Node*> childrenOf(const std::vector<Node>& tree, const Node& top) {
   std::vector<const Node*> children = {&top};
   while (children.size() < kChildren) {

@@ -15,7 +15,7 @@
 namespace fcl_artic::hdf5 {
 namespace {
 
-/// What HDF5 says of its last error, the innermost reason.
+/// The innermost reason of HDF5's last error.
 std::string reason() {
   std::string text;
   H5Ewalk2(
@@ -122,10 +122,6 @@ std::vector<hsize_t> sizes(const std::vector<std::size_t>& shape) {
 
 }  // namespace
 
-bool available() {
-  return true;
-}
-
 struct File::Impl {
   std::string path;
   Handle file{H5I_INVALID_HID, H5Fclose};
@@ -133,7 +129,7 @@ struct File::Impl {
 
   [[noreturn]] void fail(const std::string& what) const { throw std::runtime_error("'" + path + "': " + what); }
 
-  /// Stays open, with its cache of chunks: many read a few rows after the other.
+  /// The dataset stays open, with its cache of chunks: many callers read a few rows after the other.
   const Handle& open(const std::string& dataset) const {
     const auto known = open_.find(dataset);
     if (known != open_.end()) return known->second;
@@ -295,10 +291,10 @@ struct Image::Impl {
     if (std::all_of(dims.begin(), dims.end(), [](hsize_t n) { return n > 0; })) {
       std::vector<hsize_t> chunk = dims;
       // Chunks fit in the cache that HDF5 has for each dataset, 1 MiB.
-      constexpr hsize_t kMostBytes = 1 << 18;
+      constexpr hsize_t kMaxBytes = 1 << 18;
       hsize_t row = sizeof(T);
       for (std::size_t d = 1; d < chunk.size(); ++d) row *= chunk[d];
-      chunk[0] = std::clamp<hsize_t>(kMostBytes / row, 1, chunk[0]);
+      chunk[0] = std::clamp<hsize_t>(kMaxBytes / row, 1, chunk[0]);
       H5Pset_chunk(how.id(), static_cast<int>(chunk.size()), chunk.data());
       H5Pset_shuffle(how.id());
       H5Pset_deflate(how.id(), 1);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "kinematics/angles.h"
+#include "kinematics/exact_motion.h"
 #include "kinematics/rotation_vector.h"
 #include "model/sweep.h"
 #include "numerics/shown.h"
@@ -20,7 +21,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-/// Between two pieces a difference up to this, rad or m, and this part of the values is rounding.
+/// A difference between two pieces of up to kJump (rad or m) and kJumpPart of the values counts as rounding.
 constexpr double kJump = 1e-9, kJumpPart = 1e-12;
 
 std::string number(std::size_t k) {
@@ -35,7 +36,7 @@ void requireTimes(const std::vector<double>& times) {
                                   " is not later than times[" + number(k - 1) + "] = " + shown(times[k - 1]));
     }
   }
-  // Parts of the whole are what obstacles that move go by.
+  // Moving obstacles go by parts of the whole time, so it must be finite.
   if (times.size() > 1 && !std::isfinite(times.back() - times.front())) {
     throw std::invalid_argument("trajectory: the time from " + shown(times.front()) + " to " + shown(times.back()) +
                                 " is not finite");
@@ -86,7 +87,7 @@ void refuseQuaternions(const KinematicTree& tree, const char* what) {
                               "' turns by a quaternion, which " + what + " cannot describe");
 }
 
-/// A quaternion that stands still needs no words on how it turns: its rates are 0, its coefficients vanish.
+/// A quaternion that stands still is accepted without a curve: its rates are 0, its coefficients vanish.
 void requireStillQuaternions(const KinematicTree& tree, const std::vector<VectorXd>& waypoints,
                              const std::vector<VectorXd>& velocities, const std::vector<VectorXd>& accelerations) {
   for (const JointId j : tree.quaternionJoints()) {
@@ -146,6 +147,14 @@ JointMotion pieceOf(const KinematicTree& tree, MatrixXd coefficients, double dur
   }
 }
 
+void requirePieces(const std::vector<double>& times, std::size_t pieces) {
+  if (pieces == 0) throw std::invalid_argument("trajectory: no piece");
+  if (times.size() != pieces + 1) {
+    throw std::invalid_argument("trajectory: " + number(times.size()) + " times for " + number(pieces) +
+                                " pieces, not one more");
+  }
+}
+
 /// w' at the end of a turn by exp([w]) where the angular velocity is W: W = w' + b w x w' + c w x (w x w') solved for
 /// w', which is W - w x W / 2 + e w x (w x W), e = 1/g - (1 + cos) / (2 theta sin), g = theta^2 (Bullo and Murray
 /// 1995).
@@ -178,13 +187,15 @@ JointTrajectory::JointTrajectory(const KinematicTree& tree, std::vector<double> 
   }
 }
 
+JointTrajectory ExactMotion::trajectory(const KinematicTree& tree, const std::vector<double>& times,
+                                        std::vector<JointMotion> pieces) {
+  requirePieces(times, pieces.size());
+  return {tree, times, std::move(pieces)};
+}
+
 JointTrajectory JointTrajectory::piecewise(const KinematicTree& tree, const std::vector<double>& times,
                                            const std::vector<MatrixXd>& coefficients) {
-  if (coefficients.empty()) throw std::invalid_argument("trajectory: no piece");
-  if (times.size() != coefficients.size() + 1) {
-    throw std::invalid_argument("trajectory: " + number(times.size()) + " times for " + number(coefficients.size()) +
-                                " pieces, not one more");
-  }
+  requirePieces(times, coefficients.size());
   requireTimes(times);
   std::vector<JointMotion> pieces;
   for (std::size_t k = 0; k < coefficients.size(); ++k) {

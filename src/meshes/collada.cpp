@@ -122,7 +122,7 @@ class Collada {
     return count;
   }
 
-  /// What an attribute such as url="#id" names.
+  /// The element that an attribute such as url="#id" names.
   const Xml& target(const Xml& e, const char* attribute, Names kinds) const {
     const char* url = e.Attribute(attribute);
     if (!url) refuse(e, std::string("has no ") + attribute);
@@ -254,8 +254,8 @@ class Collada {
     return pose;
   }
 
-  /// @param unread  a transform above that is not read; null: none. It counts where there is geometry below only:
-  /// cameras have them.
+  /// @param unread  a transform above that is not read; null: none. It is an error only if there is geometry below:
+  /// cameras have such transforms.
   void addNode(const Xml& node, const Eigen::Affine3d& M_parent, const Xml* unread, int depth) {
     constexpr int kDeepest = 100;
     if (depth > kDeepest) refuse(node, "is one of too many: nodes may refer to each other in a circle");
@@ -267,7 +267,7 @@ class Collada {
               {"asset", "translate", "scale", "rotate", "matrix", "skew", "lookat", "node", "instance_node",
                "instance_geometry", "instance_controller", "instance_camera", "instance_light", "extra"},
               [&](const Xml& e) {
-                yield_.add(16);  // to go through it takes as long, and it has 4 bytes or more
+                yield_.add(16);  // to go through a node takes as long, and it has 4 bytes or more
                 if (is(e, "asset")) assetOf(node, asset_);
                 if (is(e, "node")) addNode(e, M, unread, depth + 1);
                 if (is(e, "instance_node")) addNode(target(e, "url", {"node"}), M, unread, depth + 1);

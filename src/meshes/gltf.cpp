@@ -72,7 +72,7 @@ class Gltf {
   }
 
  private:
-  static constexpr std::size_t kMost = std::size_t{1} << 40;  // sums of them do not overflow
+  static constexpr std::size_t kMax = std::size_t{1} << 40;  // sums of them do not overflow
 
   /// The parts of a binary file: JSON, and bytes.
   std::string_view unpack(std::string_view file) {
@@ -137,7 +137,7 @@ class Gltf {
     return found == object.end() ? nullptr : &*found;
   }
 
-  /// Refuses keys of other names, extensions that may be geometry, and what is no object.
+  /// Refuses keys of other names, extensions that may be geometry, and values that are no object.
   void checkKeys(const Json& object, Keys known, const std::string& what) const {
     if (!object.is_object()) source_.refuse(what + " is no object");
     for (const auto& [key, value] : object.items()) {
@@ -166,7 +166,7 @@ class Gltf {
   }
 
   std::size_t countOf(const Json& value, const std::string& what) const {
-    if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= kMost) {
+    if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= kMax) {
       source_.refuse(what + " is no whole number from 0");
     }
     return value.get<std::size_t>();
@@ -258,7 +258,7 @@ class Gltf {
                               q = numbersOf(node, "rotation", {0, 0, 0, 1}, what),
                               s = numbersOf(node, "scale", {1, 1, 1}, what);
     const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
-    // Written with three decimals or more, as no program would write fewer, it is that near to 1.
+    // Every program writes three decimals or more, so the length is that near to 1.
     if (!(std::abs(rotation.norm() - 1) <= 1e-3))
       source_.refuse(what + " has a rotation that is no quaternion of length 1");
     M.translate(Eigen::Vector3d(x[0], x[1], x[2]));

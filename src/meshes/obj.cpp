@@ -49,7 +49,7 @@ std::size_t toIndex(std::string_view word, std::size_t before, std::size_t count
                std::to_string(number < 0 ? before : count));
 }
 
-/// Without part in the surface: normals, textures, materials, groups, and how it is shown.
+/// Lines that do not change the surface: normals, textures, materials, groups, and how it is shown.
 constexpr std::string_view kUnused[] = {"vt",       "vn",         "vp",        "g",      "s",    "o",     "mg",
                                         "usemtl",   "mtllib",     "usemap",    "maplib", "lod",  "bevel", "c_interp",
                                         "d_interp", "shadow_obj", "trace_obj", "ctech",  "stech"};
@@ -87,7 +87,7 @@ TriangleSoup readObj(const Source& source) {
     } else if (!isFace(key) && !isOneOf(key, kUnused)) {
       lines.refuse(shown(key) + " begins a line of no kind that OBJ files have");
     } else if (!isFace(key) && lines.joined()) {
-      // Of a name, as that of a folder: readers differ on whether the next line belongs to it.
+      // The line holds a name, such as a folder's: readers differ on whether the next line belongs to it.
       lines.refuse("a line of " + shown(key) + " ends in a backslash, which would take in the next line");
     }
     found += isFace(key);

@@ -8,7 +8,7 @@
 namespace fcl_artic::meshes {
 namespace {
 
-/// What a vertex's line holds beside its place.
+/// The values that a vertex's line holds beside its place.
 struct OffHead {
   bool texture = false, colour = false, normal = false;
 };

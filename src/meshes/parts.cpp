@@ -7,9 +7,9 @@ namespace fcl_artic::meshes {
 
 void Yield::add(std::size_t count) {
   made_ += count;
-  if (made_ <= kMostCopies + kMostOfByte * bytes_) return;
+  if (made_ <= kMaxCopies + kMaxPerByte * bytes_) return;
   source_.refuse("unfolds to too much: it is of " + std::to_string(bytes_) + " bytes, and shows more than " +
-                 std::to_string(kMostCopies + kMostOfByte * bytes_) +
+                 std::to_string(kMaxCopies + kMaxPerByte * bytes_) +
                  " vertices and corners, as its nodes show the same meshes again and again; save it with each of them "
                  "once");
 }

@@ -26,7 +26,7 @@ struct Part {
 /// Counts what is made of a file: numbers, vertices and corners that are read or placed, nodes that are gone through.
 /// Places refer to meshes, to other places and to the same bytes again, so that a small file could fill all memory. A
 /// file that says each thing once makes at most 8 things of each of its bytes. A number takes one byte at least, and
-/// is a corner of a strip, so three corners of a triangle. These are read and placed, as the vertices are. kMostCopies
+/// is a corner of a strip, so three corners of a triangle. These are read and placed, as the vertices are. kMaxCopies
 /// are for what it says repeatedly: about a million triangles, for which FCL's tree takes half a gigabyte.
 class Yield {
  public:
@@ -37,7 +37,7 @@ class Yield {
   void add(std::size_t count);
 
  private:
-  static constexpr std::size_t kMostCopies = 4000000, kMostOfByte = 8;
+  static constexpr std::size_t kMaxCopies = 4000000, kMaxPerByte = 8;
 
   const Source& source_;
   std::size_t bytes_, made_ = 0;

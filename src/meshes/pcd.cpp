@@ -105,7 +105,7 @@ class Pcd {
     data_ = lines["DATA"].size() == 1 ? lines["DATA"][0] : std::string_view();
   }
 
-  /// What surely is neither a place nor an extent.
+  /// Fields that surely are neither a place nor an extent.
   void noteUnknownFields() const {
     static constexpr std::string_view kPlain[] = {
         "x",           "y",          "z",           "_",         "rgb",        "rgba",     "r",

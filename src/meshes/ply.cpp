@@ -24,7 +24,7 @@ struct PlyElement {
   std::uint64_t count = 0;
   std::vector<PlyProperty> properties;
 
-  /// The property's number; that of no property where there is none.
+  /// The property's number; if there is no such property, a number that no property has.
   std::size_t find(std::string_view property) const {
     const auto at =
         std::find_if(properties.begin(), properties.end(), [&](const auto& p) { return p.name == property; });
@@ -47,7 +47,7 @@ Scalar plyType(std::string_view name) {
   return {};
 }
 
-// What surely is no geometry.
+// Elements and properties that surely are no geometry.
 constexpr std::string_view kPlainElements[] = {"camera", "material", "multi_texture_vertex", "multi_texture_face"};
 constexpr std::string_view kPlainOfVertices[] = {"nx",
                                                  "ny",
@@ -243,7 +243,7 @@ class Ply {
     if (!unknown.empty()) source_.note("passed over of each " + e.name + ": " + unknown);
   }
 
-  /// A camera says from where points were seen, and may mean that they are to be taken over from there, as a PCD's
+  /// A camera says from where points were seen. It may mean that they are to be moved by its pose, as a PCD's
   /// VIEWPOINT.
   void noteCamera(const PlyElement& e, const std::vector<std::vector<double>>& entry) {
     if (e.name != "camera" || camera_noted_) return;

@@ -17,8 +17,9 @@ double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vec
   return u.x() * v.y() - u.y() * v.x();
 }
 
-/// The corners as seen against the polygon's normal (Newell's: the sum of its edges' cross products), in which it turns
-/// to the left; its size is made 1, so that no product overflows. Without an area: all at 0.
+/// The corners as seen against the polygon's normal, in which it turns to the left. The normal is the sum of its edges'
+/// cross products (Newell). The polygon is scaled to size 1, so that no product overflows. If it has no area, all
+/// corners are at 0.
 Outline flattened(const std::vector<Eigen::Vector3d>& corners) {
   Eigen::Vector3d lower = corners[0], upper = corners[0];
   for (const Eigen::Vector3d& x : corners) {
@@ -39,13 +40,13 @@ Outline flattened(const std::vector<Eigen::Vector3d>& corners) {
   return points;
 }
 
-/// Turns of this size are the rounding of coordinates of size 1 or less: no turn at all.
+/// A turn of this size may be the rounding of coordinates of size 1 or less: it counts as none.
 constexpr double kFlat = 16 * std::numeric_limits<double>::epsilon();
 
 /// Whether the polygon turns to the left at all of its corners, and once round in all.
 bool isConvex(const Outline& points) {
   const std::size_t n = points.size();
-  int changes = 0;  // of the direction from left to right: two of a convex polygon
+  int changes = 0;  // of the direction from left to right; a convex polygon has two
   double last = 0, first = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const Eigen::Vector2d &a = points[i], &b = points[(i + 1) % n], &c = points[(i + 2) % n];
@@ -76,8 +77,8 @@ std::vector<std::array<std::size_t, 3>> cutPolygon(const std::vector<Eigen::Vect
     for (std::size_t i = 1; i + 1 < n; ++i) triangles.push_back({0, i, i + 1});
     return triangles;
   }
-  // Ears: corners whose triangle holds no other one. Going round once without one, as of a polygon that crosses itself,
-  // any corner is cut off, so that the work ends and no edge is lost.
+  // Cuts off ears: corners whose triangle holds no other corner. If a round finds no ear, as in a polygon that crosses
+  // itself, any corner is cut off, so that the work ends and no edge is lost.
   std::vector<std::size_t> before(n), after(n);
   for (std::size_t i = 0; i < n; ++i) before[i] = (i + n - 1) % n, after[i] = (i + 1) % n;
   const auto isEar = [&](std::size_t i) {
@@ -96,7 +97,7 @@ std::vector<std::array<std::size_t, 3>> cutPolygon(const std::vector<Eigen::Vect
     if (tried < left && !isEar(at)) {
       at = after[at];
       ++tried;
-      if (compared > kMostCompared) return {};
+      if (compared > kMaxCompared) return {};
       continue;
     }
     triangles.push_back({before[at], at, after[at]});

@@ -25,10 +25,10 @@ struct Source {
 
 /// Words of a file as messages show them.
 inline std::string shown(std::string_view words) {
-  constexpr std::size_t kMost = 40;
+  constexpr std::size_t kMax = 40;
   std::string out = "'";
-  for (const char c : words.substr(0, kMost)) out += static_cast<unsigned char>(c) < ' ' ? '?' : c;
-  return out + (words.size() > kMost ? "...'" : "'");
+  for (const char c : words.substr(0, kMax)) out += static_cast<unsigned char>(c) < ' ' ? '?' : c;
+  return out + (words.size() > kMax ? "...'" : "'");
 }
 
 /// "1 line", "2 lines".

@@ -9,8 +9,8 @@
 namespace fcl_artic::meshes {
 namespace {
 
-// A binary STL: 80 bytes of anything, a count, and for each triangle a normal, three corners and two bytes of anything,
-// all in floats of the little end, as this machine's are.
+// A binary STL holds 80 bytes of anything, a count, and for each triangle a normal, three corners and two bytes of
+// anything. Its numbers are little-endian, as this machine's are.
 constexpr std::size_t kStlHead = 84, kStlTriangle = 50, kStlNormal = 12;
 
 std::uint32_t stlTriangles(std::string_view content) {
@@ -52,8 +52,8 @@ bool isKeyword(std::string_view word, std::string_view keyword) {
   return true;
 }
 
-/// A solid's line holds its name, which may be any words; where facets follow on the same line it isn't known where it
-/// ends.
+/// A solid's line holds its name, which may be any words. If facets follow on the same line, nothing shows where the
+/// name ends.
 void passName(Words& words, const Source& source) {
   Words name(words.line());
   std::string_view last;
@@ -107,7 +107,7 @@ TriangleSoup readTextStl(const Source& source) {
   return soup;
 }
 
-/// A text may be as long as four bytes of its first line say.
+/// A text's length may happen to be the one that four bytes of its first line give as a binary file's.
 bool isText(const Source& source) {
   try {
     readTextStl(source);

@@ -42,7 +42,7 @@ bool isDecimal(std::string_view word) {
   return at == word.size();
 }
 
-/// Whether a decimal number is 1 or more: its first digit that is not 0 stands that many places before the point.
+/// Whether a decimal number is 1 or more: then its first digit that is not 0 stands before the point.
 bool isOneOrMore(std::string_view word) {
   const std::size_t e = std::min(word.find_first_of("eE"), word.size());
   const std::string_view mantissa = word.substr(0, e);
@@ -57,8 +57,8 @@ bool isOneOrMore(std::string_view word) {
     const bool small = digits[0] == '-';
     digits = withoutSign(digits);
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
-    constexpr long long kMost = std::numeric_limits<long long>::max() / 2;  // no file has that many digits
-    if (error == std::errc::result_out_of_range || exponent > kMost) exponent = kMost;
+    constexpr long long kMax = std::numeric_limits<long long>::max() / 2;  // no file has that many digits
+    if (error == std::errc::result_out_of_range || exponent > kMax) exponent = kMax;
     if (small) exponent = -exponent;
   }
   return places + exponent > 0;
@@ -82,7 +82,8 @@ bool toNumber(std::string_view word, double& value) {
   const bool negative = word[0] == '-';
   double size = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), size);
-  // Outside of the range of doubles `size` is not set: the number is too large, or nearer to 0 than to any other.
+  // Outside of the range of doubles `size` is not set: the number is too large, or nearer to 0 than to any other
+  // double.
   if (error == std::errc::result_out_of_range) {
     if (isOneOrMore(digits)) return false;
     size = 0;
@@ -129,7 +130,7 @@ void noteComment(const Source& source, std::string_view line) {
   std::string letters;
   for (const char c : line) {
     const char low = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    // Numbers stay whole: of a place there are three.
+    // Numbers stay whole words: a place has three of them.
     letters += std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '-' || c == '+' ? low : ' ';
   }
   Words words(letters);
@@ -207,7 +208,7 @@ void Lines::refuse(const std::string& reason) const {
 }
 
 std::size_t Lines::commentOf(std::string_view line) const {
-  // Within a word it begins none: some C libraries print 1.#INF and 1.#QNAN, which would become 1.
+  // Within a word the sign begins no comment: some C libraries print 1.#INF and 1.#QNAN, which would become 1.
   std::size_t at = comment_ ? line.find(comment_) : line.npos;
   while (at != line.npos && at > 0 && !isBlank(line[at - 1])) at = line.find(comment_, at + 1);
   return at;

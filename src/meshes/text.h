@@ -17,8 +17,8 @@ bool isBlank(char c);    ///< Within a line: space, tab, vertical tab, form feed
 bool isLineEnd(char c);  ///< Line feed or carriage return.
 bool isSpace(char c);    ///< One of both.
 
-template <class Words = std::initializer_list<std::string_view>>
-bool isOneOf(std::string_view word, const Words& words) {
+template <class List = std::initializer_list<std::string_view>>
+bool isOneOf(std::string_view word, const List& words) {
   return std::find(std::begin(words), std::end(words), word) != std::end(words);
 }
 

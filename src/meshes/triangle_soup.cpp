@@ -10,8 +10,9 @@
 namespace fcl_artic::meshes {
 namespace {
 
-/// Whether a corner is farther from the plane through their middle than decimals of six digits may leave it: these move
-/// a coordinate by up to 5e-6 of its size, so a corner by 9e-6 of the largest, and the plane by as much.
+/// Whether a corner is farther from the plane through the corners' middle than decimals of six digits may leave it.
+/// Such decimals move a coordinate by up to 5e-6 of its size, so a corner by 9e-6 of the largest, and the plane by as
+/// much.
 bool isUneven(const std::vector<Eigen::Vector3d>& corners) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
   double size = 0;
@@ -57,7 +58,7 @@ void TriangleSoup::addFace(const std::size_t* corners, std::size_t count, const 
   for (const auto& [a, b, c] : cut) triangles.emplace_back(corners[a], corners[b], corners[c]);
 }
 
-void TriangleSoup::tell(const Source& source) const {
+void TriangleSoup::noteSkipped(const Source& source) const {
   if (points > 0) source.note("its points, " + std::to_string(points) + ", have no surface and were left out");
   if (lines > 0) source.note("its lines, " + std::to_string(lines) + ", have no surface and were left out");
   if (uneven > 0) {

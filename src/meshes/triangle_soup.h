@@ -25,7 +25,7 @@ struct TriangleSoup {
   void addFace(const std::size_t* corners, std::size_t count, const Source& source);
 
   /// Notes what was left out, and what is not defined by the file.
-  void tell(const Source& source) const;
+  void noteSkipped(const Source& source) const;
 };
 
 }  // namespace fcl_artic::meshes

@@ -45,12 +45,12 @@ struct Query {
   /// bracket. False: only the bracket is of interest.
   bool describe_contacts = true;
   /// Who advises the solver. Each may clear what it has proven; what several clear is cleared.
-  static constexpr std::int32_t kMostAdvisors = 4;
-  Advisor advisors[kMostAdvisors];
+  static constexpr std::int32_t kMaxAdvisors = 4;
+  Advisor advisors[kMaxAdvisors];
   std::int32_t num_advisors = 0;
   /// Adds one.
   [[gnu::always_inline]] void ask(const Advisor& advisor) {
-    FCL_ARTIC_ASSERT(num_advisors < kMostAdvisors);
+    FCL_ARTIC_ASSERT(num_advisors < kMaxAdvisors);
     advisors[num_advisors++] = advisor;
   }
 };

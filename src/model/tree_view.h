@@ -49,12 +49,12 @@ struct ClosedPart {
 /// Balls inside closed parts of a mesh (doc/NUMERICS.md, "Inner balls"), in its tree's frame. Lanes go over balls;
 /// those that fill the last eight up have a radius far below 0.
 struct InnerBalls {
-  static constexpr std::int32_t kMost = 16;
-  alignas(64) double center[3][kMost];
-  alignas(64) double radius[kMost];
-  std::int32_t part[kMost];  ///< that the ball lies in
-  std::int32_t count = 0;    ///< without what fills up
-  double reach = 0;          ///< they lie within this of the segment of the mesh's line swept sphere, about
+  static constexpr std::int32_t kMax = 16;
+  alignas(64) double center[3][kMax];
+  alignas(64) double radius[kMax];
+  std::int32_t part[kMax];  ///< that the ball lies in
+  std::int32_t count = 0;   ///< without what fills up
+  double reach = 0;         ///< they lie within this of the segment of the mesh's line swept sphere, about
   const ClosedPart* parts = nullptr;
 };
 

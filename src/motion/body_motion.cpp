@@ -8,8 +8,9 @@
 // where |x'| <= D1 and |x''| <= D2 over [0, 1]. A chord lies in the box of its ends. So the boxes at the ends of K
 // equal pieces, grown by the smaller bound, hold the path: no derivative is evaluated, only poses.
 //
-// D1 and D2 sum up along the elements. R is the product of the rotations passed so far; a and b sum the bounds on the
-// first and second derivatives of their angles or rotation vectors; l is the next piece of the way to the point:
+// D1 and D2 sum up along the elements. R is the product of the rotations passed so far. The numbers a and b sum the
+// bounds on the first and second derivatives of their angles or rotation vectors. The vector l is the next piece of the
+// way to the point:
 //
 //   |R'| <= a,   |R''| <= a^2 + b   (doc/NUMERICS.md, Lemma 1),
 //   |(R l)'| <= a |l| + |l'|,   |(R l)''| <= (a^2 + b) |l| + 2 a |l'| + |l''|.
@@ -110,12 +111,12 @@ VariableBounds boundVariable(const MotionElement& element) {
   return bounds;
 }
 
-// Rounding, in units of 2^-52, in any rounding mode. A constant factor of a product says what it costs. A rotation
-// about an axis or by a vector: sine and cosine, the products that make its entries, and the axis's own rounding are
-// below 40, its product with the rotations before it 9, its angle is off by less than 3 * degree + 3 = 18 times the sum
-// of its terms (Horner's scheme, and the norm of the vector).
+// Rounding, in units of 2^-52, in any rounding mode. A constant factor of a product has its own cost. For a rotation
+// about an axis or by a vector: sine and cosine, the products that make its entries, and the axis's own rounding cost
+// less than 40. Its product with the rotations before it costs 9. Its angle is off by less than 3 * degree + 3 = 18
+// times the sum of its terms (Horner's scheme, and the norm of the vector).
 constexpr double kRotationUlps = 64, kAngleUlps = 18;
-// Of the box at a pose: the products and sums that lead to its ends, and those of D1 and D2, twice what they come to.
+// For the box at a pose: twice the cost of the products and sums that lead to its ends, and of those of D1 and D2.
 constexpr double kBoxUlps = 64;
 
 }  // namespace
@@ -160,7 +161,7 @@ PathBounds boundPath(const BodyMotion& motion, double reach) {
   }
   addSegment(reach, 0, 0);
   path.terms += reach;
-  // That D1 and D2 are rounded themselves is less than this part of them.
+  // The rounding of D1 and D2 themselves is less than this part of them.
   const double slack = 1 + 0x1p-40;
   path.speed *= slack;
   path.angular_speed = a * slack;
@@ -178,7 +179,7 @@ int MotionElement::degree() const {
 }
 
 Isometry3d BodyMotion::pose(double t) const {
-  // Products with the identity are left out: they change nothing, and most constant transforms are it.
+  // Products with the identity are left out: they change nothing, and most constant transforms are the identity.
   Matrix3d R = Matrix3d::Identity();
   Vector3d p = Vector3d::Zero();
   bool turned = false;
@@ -226,10 +227,10 @@ RigidTransform BodyMotion::poseWithError(double t) const {
 }
 
 /// From the body out to the world. A turn by a rotation vector q takes a unit vector v no farther than |q x v|: it is
-/// exp([q]) v - v = integral of exp(s [q]) (q x v) over s in [0, 1]. So with v where it stands at t = 0, c_k the
-/// coefficients of q and t <= 1, a turn about an axis takes it from there by the sum of |c_k x v|, k >= 1, at most:
-/// what the axis turns it by at t = 0 commutes with the rest. A turn by a vector may have another axis at t = 0, and
-/// takes it there and back: by 2 |c_0 x v| more, unless it stands still. Rotations farther out change no length.
+/// exp([q]) v - v = integral of exp(s [q]) (q x v) over s in [0, 1]. So let v be where it stands at t = 0, c_k the
+/// coefficients of q, and t <= 1. A turn about an axis takes v from there by at most the sum of |c_k x v|, k >= 1: the
+/// turn by which the axis begins at t = 0 commutes with the rest. A turn by a vector may have another axis at t = 0,
+/// and takes it there and back: by 2 |c_0 x v| more, unless it stands still. Rotations farther out change no length.
 Heading headingOf(const BodyMotion& motion, const UnitVector& own) {
   using Kind = MotionElement::Kind;
   Heading heading{motion.after.linear() * own.vector(), 0};
@@ -274,11 +275,11 @@ void enclosePath(const BodyMotion& motion, const Vector3d& lower, const Vector3d
 
   // The number of pieces with which the boxes grow by 1/500 of the path's size, 256 at most. Infinity and NaN choose
   // 256.
-  constexpr int kMostPieces = 256;
+  constexpr int kMaxPieces = 256;
   const double growth = 2e-3 * (std::min(path.speed, path.extent) + (upper - lower).norm());
   const double wanted =
       path.acceleration == 0 ? 1 : std::min(std::sqrt(path.acceleration / (8 * growth)), path.speed / (2 * growth));
-  const int pieces = wanted < kMostPieces ? std::max(1, static_cast<int>(std::ceil(wanted))) : kMostPieces;
+  const int pieces = wanted < kMaxPieces ? std::max(1, static_cast<int>(std::ceil(wanted))) : kMaxPieces;
   const double h = (1 + 0x1p-40) / pieces;  // the times are rounded
   const double remainder = std::min(path.acceleration * h * h / 8, path.speed * h / 2);
   const double numbers = path.terms + motion.after.length() + lower.norm() + upper.norm();

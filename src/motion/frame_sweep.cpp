@@ -24,7 +24,7 @@ engine::StepKind stepKind(JointFactor::Kind kind) {
   return engine::StepKind::revolute;
 }
 
-/// Goes to a step's frame, whose z is an axis that Q turns there.
+/// Goes to a step's frame. Q turns the step's axis to the frame's z.
 void standBehind(Carrier& carrier, int step, const Rotation& Q) {
   carrier.step = step;
   carrier.offset.linear() = Q.matrix().transpose();
@@ -111,7 +111,8 @@ Carrier FrameSweep::carrier(LinkId link) {
 
 namespace {
 
-/// Multiplies a constant transform in; translations are summed: where they cancel, their rounding does not.
+/// Multiplies a constant transform in. The sizes of translations are summed: where translations cancel, their rounding
+/// does not.
 void moveBy(Carrier& carrier, const RigidTransform& constant, bool down) {
   if (isIdentity(constant)) {  // a product may come out so
     carrier.ulps += constant.ulps();

@@ -35,7 +35,8 @@ BodyMotion linkMotion(const KinematicTree& tree, const JointMotion& motion, Link
         case JointFactor::Kind::prismatic: {
           const Kind kind = factor.kind == JointFactor::Kind::prismatic ? Kind::prismatic : Kind::revolute;
           addScalar(kind, factor.axis, v, joint.mimics ? joint.mimic.multiplier : 1);
-          // An element of its own: the error of a sum that cancels would be far larger than the sum tells.
+          // The offset gets an element of its own: if it were added and the sum cancelled, the error would be far
+          // larger than the sum.
           if (joint.mimics && joint.mimic.offset != 0)
             addElement(kind, factor.axis).coefficients(0, 0) = joint.mimic.offset;
           break;

@@ -95,15 +95,28 @@ struct PairPads {
   double pose;  ///< of a difference point at tm
 };
 
+/// The motion of a step's frame over the intervals, seen from the world or from the pair's base frame.
+struct FrameMotion {
+  const FrameLanes* frame;     ///< null: it stands still
+  const MotionBounds& bounds;  ///< all zero where it stands still
+  bool first_order;            ///< as SweepView::first_order
+  double d;                    ///< half of an interval's length
+};
+
+/// Where two bodies are fixed: A in the base frame, B in the frame that moves.
+struct BodiesInFrames {
+  const Placement &inverse_a, &placement_b;
+  double extents;  ///< largest distances of points of A and of B from their own frames' origins, summed
+};
+
 /// B seen from A: quadratic, remainders and pads. For the way back, A seen from B, the remainder only: invert() makes
 /// the rest.
-/// @param frame  of the step that carries B, seen from the base frame; null where B stands still in it.
-/// @param b  of that step; all zero where B stands still.
-/// @param extents  largest distances of points of A and of B from their frames' origins, summed.
-inline PairPads relateBodies(const FrameLanes* frame, const MotionBounds& b, bool first_order,
-                             const Placement& inverse_a, const Placement& placement_b, double extents, double margin,
-                             double d, RigidLanes& m, RigidLanes& inverse) {
-  place(frame, placement_b, m);
+inline PairPads relateBodies(const FrameMotion& motion, const BodiesInFrames& bodies, double margin, RigidLanes& m,
+                             RigidLanes& inverse) {
+  const MotionBounds& b = motion.bounds;
+  const Placement &inverse_a = bodies.inverse_a, &placement_b = bodies.placement_b;
+  const double d = motion.d;
+  place(motion.frame, placement_b, m);
   seeFrom(inverse_a, m);
 
   // Bounds of B's origin seen from A's frame: a point fixed at distance `l` in the step's frame adds B_n l.
@@ -112,28 +125,31 @@ inline PairPads relateBodies(const FrameLanes* frame, const MotionBounds& b, boo
   const double D1 = b.D1 + r.first() * l, D2 = b.D2 + r.second() * l, D3 = b.D3 + r.third() * l;
   const double length = b.length + l + inverse_a.length;  // >= |c(t)|
   const double ulps = b.ulps + placement_b.ulps + inverse_a.ulps;
-  const Remainder there = remainderOf(r, D1, D3, first_order, ulps, d);
+  const Remainder there = remainderOf(r, D1, D3, motion.first_order, ulps, d);
   m.rem_c = there.c;
   m.rem_R = there.R;
   // -R^T c: Leibniz with |R^(n)| <= B_n, |c| <= length, |c^(n)| <= Dn.
   const Remainder back =
       remainderOf(r, D1 + r.first() * length, D3 + 3 * r.first() * D2 + 3 * r.second() * D1 + r.third() * length,
-                  first_order, ulps, d);
+                  motion.first_order, ulps, d);
   inverse.rem_c = back.c;
   inverse.rem_R = back.R;
-  const double sizes = length + D1 * d + extents;
+  const double sizes = length + D1 * d + bodies.extents;
   return {roundingPart(ulps, b.rounding_rate * d) * (sizes + margin) + kLeastLength,
           kUlp * (ulps + kPoseUlps) * sizes + kLeastLength};
 }
 
 /// Centre of a ball that is fixed in a step's frame, over the intervals.
+/// @param motion  of the frame, which does not stand still.
 /// @param radius  with the error of p in it.
 /// @return a radius about this centre that holds the ball.
-inline double sweepCenter(const FrameLanes& f, const MotionBounds& b, bool first_order, const Vec3& p, double radius,
-                          double d, PointLanes& center) {
+inline double sweepCenter(const FrameMotion& motion, const Vec3& p, double radius, PointLanes& center) {
+  const FrameLanes& f = *motion.frame;
+  const MotionBounds& b = motion.bounds;
+  const double d = motion.d;
   const double reach = norm(p) * (1 + 1e-15);
   const double sizes = b.length + b.D1 * d + reach + radius;
-  const Remainder remainder = remainderOf(b.rates, b.D1, b.D3, first_order, b.ulps, d);
+  const Remainder remainder = remainderOf(b.rates, b.D1, b.D3, motion.first_order, b.ulps, d);
   center = turned(f, f.R * p);
   center.c[0] = center.c[0] + f.o;
   center.c[1] = center.c[1] + f.v;

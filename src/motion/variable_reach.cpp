@@ -45,8 +45,8 @@ double reachPerUnit(const engine::SweepView& sweep, int step, const engine::Plac
       reach += rate * (multiplier * size(s.variable) + std::abs(s.offset)) + (moves ? multiplier : 0);
     }
   }
-  // A point p of the body in the last frame goes another rate |p|, or as Lemma 2 splits it: convex in p, so that the
-  // corners of a box around the body say it all.
+  // A point p of the body, in the last frame, adds rate |p|, or less as Lemma 2 splits it. Both bounds are convex in p,
+  // so they are largest at a corner of a box around the body.
   const bool turns = !path.empty() && path.front()->kind == StepKind::revolute;
   const RowMajor R(placement.R, 3, 3);
   const double most = mostOver(body, [&](const Eigen::Vector3d& x) {

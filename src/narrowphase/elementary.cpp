@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Symbols: a_i, x_j: vertices of A and of B in A's frame; a'_i = a_(i+1) - a_i and x'_j: edges; D_ij = x_j - a_i.
-//   vertex x_j on face a   s = (a'_0 x a'_1) . D_0j                inside: ((a'_0 x a'_1) x a'_i) . D_ij > 0 for i = 0,
-//   1, 2 vertex a_i on face x   s = (x'_0 x x'_1) . -D_i0               inside: ((x'_0 x x'_1) x x'_j) . -D_ij > 0 edge
-//   a'_i on edge x'_j s = m . D_ij, m = a'_i x x'_j           inside: U, V, m.m - U, m.m - V > 0 for
-//                                                                  U = m . (D_ij x x'_j), V = m . (D_ij x a'_i)
-// (A point a_i + u a'_i = x_j + v x'_j of both edges has u m.m = U and v m.m = V: cross with the other edge, dot with
-// m.) Differences of vertices come first, so that the determinants scale with the triangles and not with their distance
+// Symbols. a_i and x_j are the vertices of A and of B, in A's frame; a'_i = a_(i+1) - a_i and x'_j are their edges, and
+// D_ij = x_j - a_i. Where s vanishes, two features touch if they also meet inside themselves:
+//   vertex x_j on face a     s = (a'_0 x a'_1) . D_0j,    inside: ((a'_0 x a'_1) x a'_i) . D_ij > 0 for all i
+//   vertex a_i on face x     s = (x'_0 x x'_1) . -D_i0,   inside: ((x'_0 x x'_1) x x'_j) . -D_ij > 0 for all j
+//   edge a'_i on edge x'_j   s = m . D_ij, m = a'_i x x'_j, U = m . (D_ij x x'_j), V = m . (D_ij x a'_i),
+//                            inside: U, V, m.m - U, m.m - V > 0
+// (A common point a_i + u a'_i = x_j + v x'_j of both edges has u m.m = U and v m.m = V: cross with the other edge, dot
+// with m.) Differences of vertices come first, so the determinants scale with the triangles and not with their distance
 // from the origin.
 //
-// Triangles that are apart and then touch have, at that moment, a vertex of one on the other or two edges that meet,
-// all closed sets. So time in which each of the 15 equations is excluded is free of first contacts. One is excluded
-// over an interval by s without a root, or by a direction that keeps its two features apart. The direction takes the
-// place of the inside test there: it still decides where s vanishes identically (coplanar, parallel and zero-length
-// features).
+// When triangles that are apart come to touch, a vertex of one lies on the other, or two edges meet (all closed sets).
+// So if each of the 15 equations is excluded over an interval of time, no first contact is in it. An equation is
+// excluded if its s has no root, or if a direction keeps its two features apart. The direction stands in for the inside
+// test: it decides even where s vanishes identically (coplanar, parallel and zero-length features).
 #include "narrowphase/elementary.h"
 
 #include <algorithm>
@@ -81,8 +81,8 @@ double slope(const Quadratic& f) {
   return (std::abs(f.c1) - std::abs(f.c2)) * (1 - 4 * kUlp);
 }
 
-/// Interval Newton (18) from the middle: a root has tau = -(c0 +- rem) / (c1 + tau c2). The slope of the quadratic
-/// stands for its derivative: it needs no derivative of the remainder, and its range is half as wide.
+/// Interval Newton (18) from the middle: a root has tau = -(c0 +- rem) / (c1 + tau c2). The slope c1 + tau c2 is used
+/// instead of the derivative: it needs no derivative of the remainder, and its range is half as wide.
 /// @param[out] lo, hi  hold all roots in [-1, 1]
 /// @return false when there is none
 bool contractRoots(const Quadratic& f, double& lo, double& hi) {
@@ -132,26 +132,25 @@ Equation equation(int k) {
   return {Equation::edgeEdge, i, j, kEdge[i], kEdge[j]};
 }
 
-/// Takes the part along u out of v, to within rounding of |v|.
+/// Removes the component along u from v, to within rounding of |v|.
 void removeAlong(const Vector3d& u, Vector3d& v) {
   const double length2 = u.squaredNorm();
   if (length2 > 0) v -= v.dot(u) / length2 * u;
 }
 
-/// Closest point of a feature, and the feature's directions there, 0 at an end: the way to the point is at right
-/// angles.
+/// Closest point of a feature, and the feature's directions there (0 at an end), at right angles to the way.
 struct Foot {
   Vector3d point, e = Vector3d::Zero(), f = Vector3d::Zero();
 };
 
-/// Closest points of an equation's features. Need no trust: they give directions to try, and places to report.
+/// Closest points of an equation's features. No proof rests on them: they give directions to try, and places to report.
 struct Nearest {
   Vector3d a, x;
   Foot foot;
 
   double distance() const { return (x - a).norm(); }
-  /// x - a. The difference has lost digits to cancellation, an angle of rounding / distance; the features' own
-  /// directions restore them, so that gaps below the root of the rounding error are seen.
+  /// The direction of x - a. Cancellation turns the difference by rounding / distance. Removing its components along
+  /// the features mends that, so gaps below the root of the rounding error are seen.
   Vector3d direction() const {
     Vector3d n = x - a, f = foot.f;
     removeAlong(foot.e, n);
@@ -184,8 +183,9 @@ Foot footOnFace(const Vector3d& p, const Vector3d v[3]) {
   return best;
 }
 
-/// The nearest of all ends to the other edge, and of the lines' crossing where that lies on both: no parameter of one
-/// edge is rounded to find the other's, so near-parallel edges lose nothing.
+/// The nearest points of two edges. The candidates are each end with its nearest point on the other edge, and the
+/// crossing of the two lines where it lies on both edges. No parameter of one edge is rounded to find the other's, so
+/// near-parallel edges lose nothing.
 Nearest nearestOfEdges(const Vector3d& p, const Vector3d& p1, const Vector3d& q, const Vector3d& q1) {
   Nearest best{p, q, {}};
   const auto offer = [&](const Vector3d& a, const Vector3d& x, const Foot& foot) {
@@ -230,7 +230,7 @@ struct Sweep {
     Vector vertex[3];
     for (int j = 0; j < 3; ++j) {
       const double left_out = m.rem_c + m.rem_R * b[j].norm(), error = left_out + m.pad;
-      double way = left_out;  // all of it where the motion tells no derivatives
+      double way = left_out;  // all of it if the motion has no derivatives
       for (int k = 0; k < 3; ++k) {
         const int row = 3 * k;
         double c[3], size = 0;
@@ -266,7 +266,7 @@ struct Sweep {
     }
   }
 
-  /// The features, grown to plane or line, meet strictly inside themselves wherever s has a root.
+  /// Whether the features meet strictly inside themselves wherever s has a root.
   bool certainlyInside(const Equation& q) const {
     if (q.kind == Equation::edgeEdge) {
       const Vector &e = edge_a[q.i], &f = edge_x[q.j], &w = D[q.i][q.j], m = cross(e, f);
@@ -282,7 +282,7 @@ struct Sweep {
     return true;
   }
 
-  /// The direction between the closest points at tm keeps the features apart over the whole interval.
+  /// Whether the direction between the closest points at tm keeps the features apart over the whole interval.
   bool certainlyApart(const Equation& q, const Vector3d a[3]) const {
     const Vector n = constant(nearest(q, a, x).direction());
     for (int i = 0; i < 3; ++i) {
@@ -301,13 +301,12 @@ struct Interval {
 };
 
 constexpr int kMaxSteps = 1000, kMaxDepth = 64;
-/// A vertex that moves by no more than this many floors is not worth a shorter interval.
+/// An interval in which no vertex moves by more than this many floors (Sweep::floor) is not divided.
 constexpr double kFloors = 4;
-/// Contact points nearer than this many floors are one point: what meets there at a shallow angle is uncertain by more
-/// than one floor.
+/// Contact points nearer than this many floors are one point: at a shallow angle it is uncertain by more than a floor.
 constexpr double kSamePlace = 1e4;
-/// Time before the contact at which directions between features that touch are taken: rotation by 1e-6 of the motion's,
-/// and a gap far above rounding.
+/// Directions between features that touch are taken this time before the contact: they turn by 1e-6 of the motion's
+/// rotation, and the gap is far above rounding.
 constexpr double kStepBack = 0x1p-20;
 
 class Refinement {
@@ -331,7 +330,8 @@ class Refinement {
  private:
   Sweep sweep(double tm, double d) const { return Sweep(a_, b_, motion_, tm, d); }
 
-  /// The simultaneous solver (5.2.2, 5.2.4): one list of active equations per interval, earliest first.
+  /// The simultaneous solver (Redon 2004, 5.2.2 and 5.2.4): one list of active equations per interval, the earliest
+  /// interval first.
   /// @param[out] first  no contact before first.lo, and no way to exclude one in [first.lo, first.hi]
   bool findFirst(double t_lower, double t_upper, Interval& first) const {
     Interval stack[kMaxDepth] = {{t_lower, t_upper, kAll}};
@@ -370,8 +370,8 @@ class Refinement {
     return false;
   }
 
-  /// Existence: over a window that is a little wider than the root's uncertainty, s changes sign and the features cross
-  /// each other throughout. The window may start before t_lower, as the root still lies after it.
+  /// Existence: over a window a little wider than the root's uncertainty, s changes sign and the features cross each
+  /// other. The window may start before t_lower: the root lies after t_lower all the same.
   void proveCrossing(const Equation& q, const Interval& first, RefinedContact& out) const {
     const double tm = first.lo + 0.5 * (first.hi - first.lo), half = std::max(first.hi - tm, kUlp);
     const Quadratic f = sweep(tm, half).s(q);
@@ -380,7 +380,7 @@ class Refinement {
     for (const double factor : {1.0, 4.0}) {
       const double from = std::max(0.0, first.lo - factor * width),
                    to = std::min(out.t_upper, first.hi + factor * width);
-      // to <= 2 middle, so `to - middle` is exact and tm + d = to; tm - d >= 0, as rounding is monotone.
+      // As to <= 2 middle, `to - middle` is exact and tm + d = to. As rounding is monotone, tm - d >= 0.
       const double middle = 0.5 * (from + to);
       const Sweep s = sweep(middle, to - middle);
       if (!certainlyChangesSign(s.s(q)) || !s.certainlyInside(q)) continue;
@@ -395,8 +395,8 @@ class Refinement {
     std::copy(s.x, s.x + 3, x);
   }
 
-  /// Two triangles meet in a convex set, at first contact a point, a segment or a polygon. A feature is the smallest
-  /// one that holds all of it: the smallest that all equations at one point agree on, then the hull over the points.
+  /// Two triangles meet in a convex set. For each triangle the smallest feature that holds all of it is named: at one
+  /// point the intersection of all equations' features, over several points the union.
   void nameFeatures(int active, bool proven, RefinedContact& out) const {
     struct Place {
       Vector3d point;
@@ -422,7 +422,7 @@ class Refinement {
       if (place == end) {
         places[num_places++] = {point, k, q.a, q.b};
       } else {
-        // Two edges of a sliver are one place all along; the vertex that they share need not be there.
+        // Two edges of a sliver are one place along their whole length; the vertex that they share need not be near.
         if (holds(place->a & q.a, a_, point, same)) place->a &= q.a;
         if (holds(place->b & q.b, lower.x, point, same)) place->b &= q.b;
       }
@@ -444,13 +444,14 @@ class Refinement {
     }
     nameKind(a, b, out);
     chooseNormal(a, b, x, toward, out);
-    // Where they slide along each other, the direction in which they were apart before does not part them.
+    // If the bodies slide along each other, the direction between the features before the contact does not separate
+    // them.
     if (a != kFace && b != kFace && out.feature != FeatureKind::edgeEdge) {
       out.normal = partingDirection(a_, lower.x, out.normal);
     }
   }
 
-  /// Whether a feature that is a vertex holds the point, within `near`; others are taken to.
+  /// Whether a feature that is a vertex holds the point, within `near`. Edges and faces are assumed to hold it.
   static bool holds(int feature, const Vector3d v[3], const Vector3d& point, double near) {
     return (feature & (feature - 1)) != 0 || (v[feature >> 1] - point).norm() <= near;
   }
@@ -479,7 +480,7 @@ class Refinement {
       f = edge(x, out.feature_b);
     }
     Vector3d n = e.cross(f);
-    // Below this sine the computed cross product is no better a direction than `toward`.
+    // If the sine is below this, the computed cross product is no better a direction than `toward`.
     if (!(n.norm() > 1e-9 * e.norm() * f.norm())) n = toward;
     if (n.dot(toward) < 0) n = -n;
     if (n.norm() > 0) out.normal = n / n.norm();

@@ -20,15 +20,16 @@ namespace {
 using Eigen::Vector3d;
 using Rotation = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-constexpr int kMostIterations = 256;
-/// Rounding, of some 1e-16 of the size, turns the direction between points that are farther apart by 1e-6 rad at most.
+constexpr int kMaxIterations = 256;
+/// Least distance, as a part of the size, between points whose direction is sharp: rounding, some 1e-16 of the size,
+/// turns it by 1e-6 rad at most.
 constexpr double kSharp = 1e-10;
 
 const Piece* pieceOf(const Problem& problem, std::int32_t body, std::int32_t piece) {
   return piece < 0 ? nullptr : problem.bodies[body].tree->pieces + piece;
 }
 
-/// Those that are later than a proven one go, the others are put in order.
+/// Removes contacts that are later than a proven one, and puts the others in order.
 void orderContacts(double t_upper, std::vector<LeafContact>& contacts) {
   const auto later = [&](const LeafContact& contact) { return contact.t_lower > t_upper; };
   contacts.erase(std::remove_if(contacts.begin(), contacts.end(), later), contacts.end());
@@ -45,8 +46,7 @@ Vector3d betweenMiddles(const baseline::DifferenceBody& body) {
   return Vector3d::Map(body.place(baseline::Vec3(b.data())).k) - a;
 }
 
-/// Nearest points at t_lower, given as `body`, unless the pieces overlap: those of a half-space or plane and a bounded
-/// piece.
+/// The nearest points at t_lower of a half-space or plane and a bounded piece, unless these overlap.
 void nearestToWall(const baseline::DifferenceBody& body, LeafContact& contact) {
   const double radii = body.a->radius + body.b->radius;
   baseline::GjkResult found;
@@ -62,7 +62,7 @@ void nearestToWall(const baseline::DifferenceBody& body, LeafContact& contact) {
   contact.t_nearest = contact.t_lower;
 }
 
-/// The normal of bounded pieces that are in each other from the start, where no features have given it.
+/// The normal of bounded pieces that overlap from the start, if no features have given it.
 /// @param towards  from A's body to B's.
 void leastDepth(const baseline::DifferenceBody& body, const Vector3d& towards, LeafContact& contact) {
   if (contact.feature >= 0 || contact.t_lower > 0) return;
@@ -71,28 +71,30 @@ void leastDepth(const baseline::DifferenceBody& body, const Vector3d& towards, L
     body.support(baseline::Vec3(n.data()), point);
     return Vector3d::Map(point.w.k);
   };
-  // Cores that are apart, within their rounding, have the direction of their nearest points.
+  // If the pieces' cores (without their radii) are apart by more than rounding, the normal is the direction between
+  // their nearest points.
   baseline::GjkResult cores;
-  baseline::gjk<true>(body, baseline::Vec3(contact.normal), 1e-6, 0, kMostIterations, cores);
+  baseline::gjk<true>(body, baseline::Vec3(contact.normal), {1e-6, 0, kMaxIterations}, cores);
   if (!cores.overlap) cores.n.store(contact.normal);
   const double size = baseline::norm(body.pose.c) + towards.norm();
   if (!cores.overlap && cores.lower > kSharp * size) return;
   Vector3d::Map(contact.normal) = LeastDepth(lowest, Vector3d(Vector3d::Map(contact.normal)), towards).direction();
 }
 
-/// The same of two bounded pieces; and where no features have given the normal, the direction along which most of this
-/// gap is seen: a better one than the solver's last, which was found for its own steps.
+/// The nearest points at t_lower of two bounded pieces. Where no features have given the normal, it becomes the
+/// direction along which the search sees most of this gap. The solver's last direction is a worse normal: it was found
+/// for the solver's own steps.
 void nearestPoints(const baseline::DifferenceBody& body, const Vector3d& towards, LeafContact& contact) {
   baseline::GjkResult found;
   const double radii = body.a->radius + body.b->radius;
-  baseline::gjk<true>(body, baseline::Vec3(contact.normal), 1e-6, radii, kMostIterations, found);
+  baseline::gjk<true>(body, baseline::Vec3(contact.normal), {1e-6, radii, kMaxIterations}, found);
   if (found.overlap) return leastDepth(body, towards, contact);
   baseline::originWeights(found.simplex);
   baseline::Vec3 a, b;
   baseline::combine(body, found.simplex, a, b);
   const double size = baseline::norm(a) + baseline::norm(b), between = baseline::norm(b - a);
-  // Where the search has not come to an end, next to contact of curved surfaces, no two points are known to be nearer
-  // than the one at which they touch.
+  // If the search has not converged, as next to contact of curved surfaces, no nearest points are reported: the contact
+  // point stays.
   const double gap = found.lower - radii;
   if (!(between - radii <= 2 * std::max(0.0, gap) + 1e-12 * size)) return;
   const bool sharp = between > kSharp * size;
@@ -125,7 +127,7 @@ void EngineWorkspace::solve(const Problem& problem, const Query& query, Answer& 
 PairMotion EngineWorkspace::lookAt(const Problem& problem, PairId pair, double tm, double d) const {
   PairMotion motion = pairMotion(pair, tm, d);
   if (!problem.sweeps[problem.parts(pair).sweep].first_order) return motion;
-  // Without derivatives the motion tells poses only: the velocity is that between two of them.
+  // A motion without derivatives has poses only: the velocity is taken between two of them.
   const PairMotion before = pairMotion(pair, tm - d, d), after = pairMotion(pair, tm + d, d);
   Rotation::Map(motion.R[1]) = 0.5 * (Rotation::Map(after.R[0]) - Rotation::Map(before.R[0]));
   Vector3d::Map(motion.c[1]) = 0.5 * (Vector3d::Map(after.c[0]) - Vector3d::Map(before.c[0]));
@@ -162,7 +164,7 @@ void EngineWorkspace::nameFeatures(const Problem& problem, const Query& query, L
     contact.t_upper = refined.t_upper;
   }
   Vector3d::Map(contact.normal) = refined.normal;
-  if (contact.certain && !refined.certain) return;  // the solver has proven it, at a point of its own
+  if (contact.certain && !refined.certain) return;  // the solver's own proof stays, with its point
   contact.t = refined.certain ? refined.t_upper : refined.t_lower;
   Vector3d::Map(contact.point) = refined.point;
 }
@@ -173,8 +175,8 @@ void EngineWorkspace::addWitness(const Problem& problem, const Query& query, Lea
   contact.approach_speed = 0;
   if (query.any) return;
 
-  // One look at the motion, about a time next to t_lower within [0, 1]: its linear term is the velocity, and over so
-  // short a time the quadratic is the pose. (A report: nothing is proven with it.)
+  // One quadratic of the motion, about a time next to t_lower within [0, 1]. Its linear term is the velocity, and over
+  // so short a time it is the pose. (This is for reports: nothing is proven with it.)
   constexpr double kSpan = 0x1p-14;
   const double tm = std::min(std::max(contact.t_lower, kSpan), 1 - kSpan), tau = (contact.t_lower - tm) / kSpan;
   const PairMotion motion = lookAt(problem, contact.pair, tm, kSpan);

@@ -30,8 +30,8 @@ class LeastDepth {
 
  private:
   using Vector3d = Eigen::Vector3d;
-  // For curved bodies a polytope of so many corners errs in its normals by about 1 / kMostCorners rad.
-  static constexpr int kMostCorners = 96, kMostFaces = 4 * kMostCorners;
+  // For curved bodies a polytope of so many corners errs in its normals by about 1 / kMaxCorners rad.
+  static constexpr int kMaxCorners = 96, kMaxFaces = 4 * kMaxCorners;
   static constexpr double kFlat = 1e-12;   // of W's size: what it is thinner than is rounding
   static constexpr double kFound = 1e-10;  // the same: no corner lies beyond a face by more
 
@@ -84,7 +84,7 @@ class LeastDepth {
 
   /// A face whose normal points away from the first corners' middle.
   void add(int a, int b, int c) {
-    if (num_faces_ == kMostFaces) return;
+    if (num_faces_ == kMaxFaces) return;
     Face& face = faces_[num_faces_++];
     Vector3d n = (corners_[b] - corners_[a]).cross(corners_[c] - corners_[a]);
     const double area = n.norm();
@@ -96,7 +96,7 @@ class LeastDepth {
   }
 
   void expand() {
-    while (num_corners_ < kMostCorners && num_faces_ < kMostFaces) {
+    while (num_corners_ < kMaxCorners && num_faces_ < kMaxFaces) {
       int nearest = 0;
       for (int f = 1; f < num_faces_; ++f) nearest = faces_[f].distance < faces_[nearest].distance ? f : nearest;
       const Face face = faces_[nearest];
@@ -109,7 +109,7 @@ class LeastDepth {
 
   /// Replaces the faces that a new corner sees by those from it to their border.
   bool replaceSeen(const Vector3d& tip) {
-    int border[kMostFaces][2], num_border = 0, kept = 0;
+    int border[kMaxFaces][2], num_border = 0, kept = 0;
     for (int f = 0; f < num_faces_; ++f) {
       const Face face = faces_[f];
       const bool seen = face.distance < std::numeric_limits<double>::infinity() &&
@@ -125,7 +125,7 @@ class LeastDepth {
         if (same < num_border) {
           --num_border;
           border[same][0] = border[num_border][0], border[same][1] = border[num_border][1];
-        } else if (num_border < kMostFaces) {
+        } else if (num_border < kMaxFaces) {
           border[num_border][0] = from, border[num_border][1] = to;
           ++num_border;
         }
@@ -141,8 +141,8 @@ class LeastDepth {
   const Lowest& lowest_;
   Vector3d best_, towards_, middle_;
   double gap_ = -std::numeric_limits<double>::infinity(), size_ = 0;
-  Vector3d corners_[kMostCorners];
-  Face faces_[kMostFaces];
+  Vector3d corners_[kMaxCorners];
+  Face faces_[kMaxFaces];
   int num_corners_ = 0, num_faces_ = 0;
 };
 

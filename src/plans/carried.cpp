@@ -11,7 +11,7 @@
 namespace fcl_artic::plans {
 namespace {
 
-/// Of each file: which of its objects stand for a carried one already.
+/// For each file: which of its objects stand for a carried one already.
 using Taken = std::vector<std::vector<bool>>;
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
@@ -32,7 +32,7 @@ std::size_t takeObject(const std::vector<Attached>& attached, const std::string&
   return kNone;
 }
 
-/// All that is in a file of that name, or of any.
+/// Takes all objects in a file of that name.
 std::size_t takeFile(const std::vector<Attached>& attached, const std::string& name, Taken& taken) {
   for (std::size_t f = 0; f < attached.size(); ++f) {
     if (!isUntouched(taken[f]) || (!name.empty() && attached[f].file != name)) continue;
@@ -84,7 +84,7 @@ void requireCarried(const KinematicTree& tree, const Plan& plan, const std::vect
   Taken taken;
   for (const Attached& file : attached) taken.emplace_back(file.objects.size(), false);
   std::vector<std::size_t> found(plan.carried.size(), kNone);
-  // Objects first: a file's name stands for all in it only where none of it is meant by its own.
+  // Objects first: a file's name stands for all of its objects only if no object of it is named itself.
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (!plan.carried[i].name.empty()) found[i] = takeObject(attached, plan.carried[i].name, taken);
   }

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "kinematics/angles.h"
 #include "plans/variables.h"
 
 namespace fcl_artic::plans {
@@ -25,7 +26,7 @@ std::string_view trimmed(std::string_view text) {
 
 constexpr char kBlanks = ' ';  ///< any number of blanks and tabs
 
-/// What separates the columns of a line.
+/// The character that separates the columns of a line.
 char separatorOf(std::string_view line) {
   for (const char separator : {';', ',', '\t'}) {
     if (line.find(separator) != std::string_view::npos) return separator;
@@ -77,7 +78,7 @@ bool isRowOfNumbers(const std::vector<std::string_view>& fields) {
   return std::all_of(fields.begin(), fields.end(), [&](std::string_view field) { return cellOf(field, degrees); });
 }
 
-/// The name without one of the endings; empty where it has none of them.
+/// The name without one of the endings; empty if it has none of them.
 std::string without(const std::string& name, const std::vector<std::string>& endings) {
   for (const std::string& ending : endings) {
     if (name.size() > ending.size() && name.compare(name.size() - ending.size(), ending.size(), ending) == 0) {
@@ -87,51 +88,12 @@ std::string without(const std::string& name, const std::vector<std::string>& end
   return {};
 }
 
-/// Columns of one quantity, by joint.
-struct QuantityColumns {
-  std::vector<std::string> joints;
-  std::vector<std::size_t> at;
-
-  void add(const std::string& joint, std::size_t column) {
-    joints.push_back(joint);
-    at.push_back(column);
-  }
-};
-
-/// The columns in the order of `joints`.
-Plan::Rows take(const Table& table, const QuantityColumns& columns, const std::vector<std::string>& joints,
-                const std::string& what) {
-  if (columns.at.empty()) return {};
-  std::vector<std::size_t> order;
-  for (const std::string& joint : joints) {
-    const auto found = std::find(columns.joints.begin(), columns.joints.end(), joint);
-    if (found == columns.joints.end()) {
-      throw std::invalid_argument(
-          fmt::format("line {}: joint '{}' has no column of its {}, which others have "
-                      "(--skip leaves theirs out)",
-                      table.header_line, joint, what));
-    }
-    order.push_back(columns.at[static_cast<std::size_t>(found - columns.joints.begin())]);
-  }
-  for (const std::string& joint : columns.joints) {
-    if (std::find(joints.begin(), joints.end(), joint) != joints.end()) continue;
-    throw std::invalid_argument(fmt::format("line {}: joint '{}' has a column of its {}, and none of its position",
-                                            table.header_line, joint, what));
-  }
-  Plan::Rows rows;
-  for (const std::vector<double>& row : table.rows) {
-    std::vector<double>& out = rows.emplace_back();
-    for (const std::size_t column : order) out.push_back(row[column]);
-  }
-  return rows;
-}
-
 const std::vector<std::string> kVelocityEndings{"/velocity", ".velocity", "_velocity", "_vel"},
     kAccelerationEndings{"/acceleration", ".acceleration", "_acceleration", "_acc"};
 
 enum class Quantity { time, position, velocity, acceleration, none };
 
-/// What a column is taken for.
+/// The meaning that a column is taken to have.
 struct Meaning {
   Quantity quantity = Quantity::none;
   std::string joint;
@@ -153,6 +115,48 @@ struct Meaning {
   }
 };
 
+/// Columns of one quantity, by joint.
+struct QuantityColumns {
+  std::vector<std::string> joints;  ///< in the order of the file
+  std::map<std::string, std::size_t> at;
+
+  void add(const Meaning& meaning, std::size_t column, int line) {
+    const auto [first, is_new] = at.emplace(meaning.joint, column);
+    if (!is_new) {
+      throw std::invalid_argument(
+          fmt::format("line {}: two columns are '{}', {} and {}", line, meaning.text(), first->second, column));
+    }
+    joints.push_back(meaning.joint);
+  }
+};
+
+/// The columns in the order of those of positions.
+Plan::Rows take(const Table& table, const QuantityColumns& columns, const QuantityColumns& positions,
+                const std::string& what) {
+  if (columns.at.empty()) return {};
+  std::vector<std::size_t> order;
+  for (const std::string& joint : positions.joints) {
+    const auto found = columns.at.find(joint);
+    if (found == columns.at.end()) {
+      throw std::invalid_argument(
+          fmt::format("line {}: joint '{}' has no column of its {}, which others have (--skip leaves theirs out)",
+                      table.header_line, joint, what));
+    }
+    order.push_back(found->second);
+  }
+  for (const std::string& joint : columns.joints) {
+    if (positions.at.count(joint)) continue;
+    throw std::invalid_argument(fmt::format("line {}: joint '{}' has a column of its {}, and none of its position",
+                                            table.header_line, joint, what));
+  }
+  Plan::Rows rows;
+  for (const std::vector<double>& row : table.rows) {
+    std::vector<double>& out = rows.emplace_back();
+    for (const std::size_t column : order) out.push_back(row[column]);
+  }
+  return rows;
+}
+
 std::string lowered(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
   return text;
@@ -168,7 +172,7 @@ std::optional<Meaning> exactMeaning(const KinematicTree& tree, const std::string
   return std::nullopt;
 }
 
-/// Paths, as /joint_states/JOINT/position: the part before the last is a variable.
+/// The meaning of a path such as /joint_states/JOINT/position: the part before the last is a variable.
 std::optional<Meaning> pathMeaning(const KinematicTree& tree, const std::string& name) {
   static const std::map<std::string, Quantity> kQuantities{{"position", Quantity::position},
                                                            {"positions", Quantity::position},
@@ -185,7 +189,7 @@ std::optional<Meaning> pathMeaning(const KinematicTree& tree, const std::string&
   if (last == std::string::npos) return std::nullopt;
   const auto quantity = kQuantities.find(lowered(name.substr(last + 1)));
   if (quantity == kQuantities.end()) return std::nullopt;
-  // Names of variables may hold these signs too: the longest end that is one.
+  // Names of variables may hold these signs too, so the longest end of the path that is such a name counts.
   const std::string path = name.substr(0, last);
   for (std::size_t at = 0;;) {
     if (isVariable(tree, path.substr(at))) return Meaning{quantity->second, path.substr(at)};
@@ -214,7 +218,7 @@ std::optional<std::pair<std::string, int>> numberedName(const std::string& name)
   return std::make_pair(text, number);
 }
 
-/// Numbered columns, by what they are numbers of: as many as there are joints, from 0 or 1 on.
+/// Gives numbered columns their meanings: those that count from 0 or 1 on and are as many as the joints.
 void addNumbered(const std::vector<std::string>& columns, const std::vector<std::string>& joints,
                  std::vector<std::optional<Meaning>>& meanings) {
   static const std::vector<std::pair<Quantity, std::vector<std::string>>> kFamilies{
@@ -278,7 +282,7 @@ std::vector<std::optional<Meaning>> givenMeanings(const KinematicTree& tree, con
   return meanings;
 }
 
-/// Of columns without names.
+/// The meanings of columns without names.
 std::vector<std::optional<Meaning>> meaningsByPlace(const KinematicTree& tree, const Table& table,
                                                     const ColumnOptions& options) {
   const std::vector<std::string> joints = jointsOf(tree, options);
@@ -341,8 +345,8 @@ std::vector<std::optional<Meaning>> meaningsByName(const KinematicTree& tree, co
   return meanings;
 }
 
-/// The names in the last comment before rows without names, as NumPy's savetxt() writes them; none unless it has as
-/// many words as there are columns, and one of them is a variable's name.
+/// The names in the last comment before rows without names, as NumPy's savetxt() writes them. There are none unless the
+/// comment has as many words as there are columns, and one of them is a variable's name.
 std::vector<std::string> namesInComment(const KinematicTree& tree, const Table& table) {
   std::vector<std::string> names;
   for (const std::string_view name : splitLine(table.comment, separatorOf(table.comment))) names.emplace_back(name);
@@ -351,7 +355,7 @@ std::vector<std::string> namesInComment(const KinematicTree& tree, const Table& 
   return names;
 }
 
-/// "time = Time, hinge = q1; left out: gripper": what is not in the robot's own words.
+/// "time = Time, hinge = q1; left out: gripper": the columns whose names are not the robot's own.
 std::string takenText(const KinematicTree& tree, const Table& table,
                       const std::vector<std::optional<Meaning>>& meanings) {
   std::string taken, left;
@@ -453,13 +457,13 @@ Plan parseCsv(const KinematicTree& tree, std::string_view content, const ColumnO
         times.push_back(i);
         break;
       case Quantity::position:
-        positions.add(meaning.joint, i);
+        positions.add(meaning, i, table.header_line);
         break;
       case Quantity::velocity:
-        velocities.add(meaning.joint, i);
+        velocities.add(meaning, i, table.header_line);
         break;
       case Quantity::acceleration:
-        accelerations.add(meaning.joint, i);
+        accelerations.add(meaning, i, table.header_line);
         break;
       case Quantity::none:
         break;
@@ -470,21 +474,13 @@ Plan parseCsv(const KinematicTree& tree, std::string_view content, const ColumnO
     throw std::invalid_argument(
         fmt::format("line {}: two columns of times, '{}' and '{}'", table.header_line, name(times[0]), name(times[1])));
   }
-  for (std::size_t j = 0; j < positions.joints.size(); ++j) {
-    for (std::size_t k = 0; k < j; ++k) {
-      if (positions.joints[j] == positions.joints[k]) {
-        throw std::invalid_argument(fmt::format("line {}: two columns are joint '{}', {} and {}", table.header_line,
-                                                positions.joints[j], positions.at[k], positions.at[j]));
-      }
-    }
-  }
   plan.joints = positions.joints;
   plan.joints_counted = std::any_of(meanings.begin(), meanings.end(), [](const auto& m) { return m->counted; });
-  plan.positions = take(table, positions, plan.joints, "position");
-  plan.velocities = take(table, velocities, plan.joints, "velocity");
-  plan.accelerations = take(table, accelerations, plan.joints, "acceleration");
+  plan.positions = take(table, positions, positions, "position");
+  plan.velocities = take(table, velocities, positions, "velocity");
+  plan.accelerations = take(table, accelerations, positions, "acceleration");
   if (!times.empty()) {
-    // A clock's seconds since 1970 say nothing of a motion, and leave few digits for it.
+    // Times above this are a clock's seconds since 1970: they leave few digits for a motion.
     constexpr double kClock = 1e8;
     const double first = table.rows.empty() ? 0 : table.rows[0][times[0]], begin = first >= kClock ? first : 0;
     for (const std::vector<double>& row : table.rows) plan.times.push_back(row[times[0]] - begin);

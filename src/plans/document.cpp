@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "kinematics/angles.h"
 #include "plans/refuse.h"
 #include "plans/variables.h"
 
@@ -21,7 +22,7 @@ constexpr int kDeepestMessage = 20;  // messages within messages
 constexpr double kFlat = 1e-6;       // of a planar joint's pose: m out of its plane, and part of the quaternion
 constexpr double kIdentity = 1e-9;   // a pose that nobody has to know of
 
-/// Of a message's start state.
+/// The start state in a message.
 struct Start {
   std::map<std::string, double> state;
   std::vector<Carried> carried;
@@ -37,7 +38,7 @@ std::string shown(const Json& value) {
 constexpr std::initializer_list<const char*> kInner{"trajectory", "planned_trajectory", "goal", "msg"};
 constexpr const char* kRecorded = "executed_trajectory";  // of a move_group's result: no plan
 
-/// The first of the keys that an object has; null where it has none.
+/// The value of the first of the keys that an object has; null if it has none.
 const Json* find(const Json& object, std::initializer_list<const char*> keys) {
   for (const char* key : keys) {
     const auto found = object.find(key);
@@ -62,7 +63,7 @@ bool holdsPlan(const Json& value) {
   return std::any_of(value.begin(), value.end(), holdsPlan);
 }
 
-/// Which of an object's keys have plans, or are parts of one; parts of one plan count once, by the first of them.
+/// The keys of an object that have plans, or are parts of one. The parts of one plan count once, by the first of them.
 std::vector<std::string> plansIn(const Json& object) {
   static const std::set<std::string> kParts{"joint_trajectory", "multi_dof_joint_trajectory"},
       kEnds{"waypoints", "from", "start", "to", "goal"}, kLists{"trajectory", "planned_trajectory", "msg", "plans"},
@@ -102,7 +103,7 @@ double numberOf(const Json& value, const std::string& where) {
   refuse(fmt::format("{}: {} is not a number", where, shown(value)));
 }
 
-/// Refuses keys that are neither read nor surely no place or motion: a slip, a unit, another message's.
+/// Refuses keys that are not read and may be a place or motion: a slip, a unit, a key of another message.
 /// @param known  both of them.
 void requireKnown(const Json& object, const std::string& where, const std::vector<std::string_view>& known) {
   for (const auto& item : object.items()) {
@@ -111,7 +112,7 @@ void requireKnown(const Json& object, const std::string& where, const std::vecto
   }
 }
 
-/// Keys that say the same: whoever gives two of them means one.
+/// Refuses two keys that mean the same: whoever gives both means one.
 void refuseTwo(const Json& value, std::initializer_list<const char*> keys) {
   const char* first = nullptr;
   for (const char* key : keys) {
@@ -150,7 +151,7 @@ double secondsOf(const Json& duration, const std::string& where) {
   return numberOf(*whole, where) + 1e-9 * nanoseconds;
 }
 
-/// Of a joint: the values of a pose, x, y, z and a quaternion x, y, z, w.
+/// A pose as the values of a joint: x, y, z and a quaternion x, y, z, w.
 std::vector<double> poseOf(const Json& transform, const std::string& where) {
   const auto part = [&](const char* key, std::initializer_list<const char*> entries, std::vector<double>& out) {
     const Json* values = transform.is_object() ? find(transform, {key}) : nullptr;
@@ -176,9 +177,8 @@ struct PoseJoint {
 };
 
 PoseJoint poseJoint(const KinematicTree& tree, const std::string& name, const std::string& where) {
-  for (JointId j = 0; j < tree.numJoints(); ++j) {
+  if (const JointId j = tree.findJoint(name); j >= 0) {
     const Joint& joint = tree.joint(j);
-    if (joint.name != name) continue;
     if (joint.type != JointType::planar && joint.type != JointType::floating) {
       refuse(fmt::format("{}: joint '{}' of robot '{}' is neither planar nor floating", where, name, tree.name()));
     }
@@ -194,8 +194,8 @@ PoseJoint poseJoint(const KinematicTree& tree, const std::string& name, const st
                   where, tree.name(), name));
 }
 
-/// Poses are those of a joint against the link that it hangs on. A frame_id is that link's, or, as in MoveIt's
-/// messages, the root's. (MoveIt would take them over from another frame by what it knows of where that stands.)
+/// Poses are those of a joint against its parent link. A frame_id must be that link's, or, as in MoveIt's messages, the
+/// root's. (MoveIt transforms poses from other frames, as it knows where these stand.)
 void requireFrame(const KinematicTree& tree, const Json& message, const PoseJoint& joint, const std::string& name,
                   const std::string& where) {
   const Json* header = find(message, {"header"});
@@ -218,20 +218,15 @@ std::vector<double> valuesAt(const PoseJoint& joint, const std::vector<double>& 
 }
 
 bool isMimic(const KinematicTree& tree, const std::string& name) {
-  for (JointId j = 0; j < tree.numJoints(); ++j) {
-    if (tree.joint(j).name == name) return tree.joint(j).mimics;
-  }
-  return false;
+  const JointId j = tree.findJoint(name);
+  return j >= 0 && tree.joint(j).mimics;
 }
 
 bool isJoint(const KinematicTree& tree, const std::string& name) {
-  for (JointId j = 0; j < tree.numJoints(); ++j) {
-    if (tree.joint(j).name == name) return true;
-  }
-  return false;
+  return tree.findJoint(name) >= 0;
 }
 
-/// Mimic joints stand where those that they follow have them, here and all along the plan.
+/// Checks that mimic joints stand where the joints that they follow have them, here and all along the plan.
 void requireFollowing(const KinematicTree& tree, const std::map<std::string, double>& followers, const Start& start,
                       const std::string& where) {
   Eigen::VectorXd q = tree.neutralConfiguration();
@@ -320,7 +315,7 @@ Start startOf(const KinematicTree& tree, const Json& robot_state) {
   return start;
 }
 
-/// Rows of velocities or accelerations: all points have them, or none has.
+/// Adds a row of velocities or accelerations: all points must have them, or none.
 void addRates(const Json& point, const char* key, std::size_t k, std::size_t joints, Plan::Rows& rows) {
   const std::string where = fmt::format("waypoint {}", k);
   const std::vector<double> values = numbersOf(listOf(point, key, where), fmt::format("{}, {}", where, key));
@@ -414,7 +409,7 @@ void addPoses(const KinematicTree& tree, const Json& message, Plan& plan) {
   }
 }
 
-/// A message whose times are all 0 is one that nobody has timed.
+/// Forgets times that are all 0: nobody has timed such a message.
 void forgetNoTimes(Plan& plan) {
   const bool none = std::all_of(plan.times.begin(), plan.times.end(), [](double t) { return t == 0; });
   if (plan.times.size() < 2 || !none) return;
@@ -468,7 +463,8 @@ class Reader {
     plan.error = error;
   }
 
-  /// A message that holds one with a motion. Beside it may stand what is no place and no motion of this plan.
+  /// Reads a message that holds one with a motion. Other keys beside it are accepted if they are no place and no motion
+  /// of this plan.
   void readOuter(const Json& value, const std::string& label, const Start& start, int depth) {
     refuseTwo(value, {"trajectory", "planned_trajectory", "goal", "msg"});
     refuseTwo(value, {"trajectory_start", "start_state"});
@@ -531,7 +527,8 @@ class Reader {
     for (std::size_t i = 0; i < list.size(); ++i) read(list[i], fmt::format("{}[{}]", label, i), start, depth + 1);
   }
 
-  /// One message or several, carried out one after the other: each begins where the one before has left the robot.
+  /// Reads one message, or several that are carried out one after the other: each begins where the one before has left
+  /// the robot.
   void readParts(const Json& message, const std::string& label, const Start& start, int depth) {
     if (!message.is_array() || message.size() == 1) {
       return read(message.is_array() ? message[0] : message, label, start, depth);
@@ -564,14 +561,15 @@ class Reader {
     for (int v = 0; v < tree_.dof(); ++v) {
       const auto known = state.find(tree_.variableName(v));
       if (known != state.end()) from[v] = to[v] = known->second;
-      for (std::size_t j = 0; known != state.end() && j < part.joints.size(); ++j) {
-        if (part.joints[j] == known->first) to[v] = part.positions.front()[j];
-      }
+    }
+    for (std::size_t j = 0; j < part.joints.size(); ++j) {
+      const int v = tree_.findVariable(part.joints[j]);
+      if (v >= 0 && state.count(part.joints[j])) to[v] = part.positions.front()[j];
     }
     for (int v = 0; v < tree_.dof(); ++v) {
       const JointId j = tree_.variableJoint(v);
       const bool forever = tree_.isAngle(v) && !hasLimits(tree_.joint(j));
-      double gap = forever ? std::remainder(to[v] - from[v], 2 * kHalfTurn) : to[v] - from[v];
+      double gap = forever ? std::remainder(to[v] - from[v], kTwoPi) : to[v] - from[v];
       if (const int q = tree_.quaternionVariable(j); q >= 0 && v >= q) {  // of two signs, which say the same
         gap = from.segment<4>(q).dot(to.segment<4>(q)) < 0 ? to[v] + from[v] : gap;
       }
@@ -613,8 +611,8 @@ class Reader {
     plan.name += (plan.name.empty() ? "" : " ") + text;
   }
 
-  /// Reads rows of a plan: lists, or objects by name. Lists are in the order of the plan's joints; where it names none,
-  /// in the robot's, and nobody knows in which one beside objects.
+  /// Reads rows of a plan: lists, or objects by name. Lists are in the order of the plan's joints. If the plan names no
+  /// joints, lists are in the robot's order; then lists and objects must not be mixed.
   class Rows {
    public:
     explicit Rows(Plan& plan) : plan_(plan), ordered_(!plan.joints.empty()) {}

@@ -46,7 +46,7 @@ struct Array {
   }
 };
 
-/// What stands after 'key': in the header.
+/// The text that stands after 'key': in the header.
 std::string_view valueOf(std::string_view header, const std::string& key, const std::string& name) {
   const std::size_t at = header.find("'" + key + "':");
   if (at == std::string_view::npos) refuse(fmt::format("'{}': its header has no '{}'", name, key));
@@ -88,7 +88,7 @@ Array parseOne(std::string_view content, const std::string& name) {
   std::string_view shape = valueOf(header, "shape", name);
   if (shape.empty() || shape[0] != '(') refuse(fmt::format("'{}': its header has no shape", name));
   shape = shape.substr(1, std::min(shape.find(')'), shape.size()) - 1);
-  constexpr std::size_t kMost = std::size_t{1} << 40;  // so that no product overflows
+  constexpr std::size_t kMax = std::size_t{1} << 40;  // so that no product overflows
   std::size_t total = 1;
   for (std::size_t i = 0; i < shape.size();) {
     if (shape[i] < '0' || shape[i] > '9') {
@@ -100,10 +100,10 @@ Array parseOne(std::string_view content, const std::string& name) {
     std::size_t n = 0;
     for (; i < shape.size() && shape[i] >= '0' && shape[i] <= '9'; ++i) {
       n = n * 10 + static_cast<std::size_t>(shape[i] - '0');
-      if (n > kMost) refuse(fmt::format("'{}' claims {} rows and more", name, kMost));
+      if (n > kMax) refuse(fmt::format("'{}' claims {} rows and more", name, kMax));
     }
     array.shape.push_back(n);
-    if (n > 0 && total > kMost / n) refuse(fmt::format("'{}' claims {} numbers and more", name, kMost));
+    if (n > 0 && total > kMax / n) refuse(fmt::format("'{}' claims {} numbers and more", name, kMax));
     total *= n;
   }
   if (array.bytes.size() != array.size() * array.itemSize()) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kBlank = " \t\r";
 
-/// States of joints, as OMPL's spaces print them. (Those of time and of whole numbers are no joint's value.)
+/// States of joints, as OMPL's spaces print them. (A state of time or of whole numbers is no joint's value.)
 constexpr std::string_view kStates[] = {"RealVectorState", "SO2State", "SO3State"};
 
 /// Of "Geometric path with 3 states".

@@ -69,6 +69,7 @@ std::vector<Plan> parseStream(const KinematicTree& tree, std::string_view conten
 void keepUnitsOfComments(std::string_view content, std::vector<Plan>& plans) {
   constexpr std::string_view kMark = "\xEF\xBB\xBF", kBefore = " \t\r\"";
   if (content.substr(0, kMark.size()) == kMark) content.remove_prefix(kMark.size());
+  Plan found;
   for (int line = 1; !content.empty(); ++line) {
     const std::size_t end = std::min(content.find('\n'), content.size());
     const std::string_view text = content.substr(0, end);
@@ -77,7 +78,11 @@ void keepUnitsOfComments(std::string_view content, std::vector<Plan>& plans) {
     while (begin != text.npos && begin > 0 && kBefore.find(text[begin - 1]) == text.npos)
       begin = text.find('#', begin + 1);
     if (begin == text.npos) continue;
-    for (Plan& plan : plans) keepUnits(text.substr(begin), line, plan);
+    keepUnits(text.substr(begin), line, found);
+  }
+  for (Plan& plan : plans) {
+    if (plan.other_angles.empty()) plan.other_angles = found.other_angles;
+    if (plan.other_units.empty()) plan.other_units = found.other_units;
   }
 }
 
@@ -85,16 +90,16 @@ void keepUnitsOfComments(std::string_view content, std::vector<Plan>& plans) {
 
 void keepUnits(std::string_view text, int line, Plan& plan) {
   const auto keep = [&](std::string& kept) {
-    constexpr std::size_t kMost = 80;
-    const std::string shown = text::oneLine(text.substr(0, text.find_last_not_of(" \t\r") + 1).substr(0, kMost));
+    constexpr std::size_t kMax = 80;
+    const std::string shown = text::oneLine(text.substr(0, text.find_last_not_of(" \t\r") + 1).substr(0, kMax));
     if (kept.empty()) kept = fmt::format("line {} says '{}'", line, shown);
   };
   if (text::speaksOfOtherAngles(text)) keep(plan.other_angles);
   if (text::speaksOfOtherLengthsOrTimes(text)) keep(plan.other_units);
 }
 
-std::vector<std::string> unitNotes(const Plan& plan, bool degrees) {
-  std::vector<std::string> notes;
+std::vector<std::string> notesOf(const Plan& plan, bool degrees) {
+  std::vector<std::string> notes = plan.notes;
   if (!degrees && !plan.other_angles.empty()) {
     notes.push_back(
         plan.other_angles +
@@ -146,7 +151,7 @@ std::vector<Plan> parsePlans(const KinematicTree& tree, std::string_view content
       break;
   }
   if (format == Format::csv || format == Format::yaml) keepUnitsOfComments(content, out);
-  // Of these a part may be whole: the last number may have lost digits.
+  // A part of a file in these formats may look whole, though its last number has lost digits.
   const bool text = format == Format::csv || format == Format::yaml || format == Format::ompl;
   if (text && !content.empty() && std::string_view("\n]}").find(content.back()) == std::string_view::npos) {
     for (Plan& plan : out) plan.notes.emplace_back("the last line has no line end: the file may be cut short");

@@ -42,7 +42,7 @@ class Builder : public YAML::EventHandler {
   std::vector<Json> documents;
 
   void OnDocumentStart(const YAML::Mark& mark) override {
-    // At a sign that begins no value, the parser gives an empty document, and the next one at the same sign, for ever.
+    // If a sign begins no value, the parser gives an empty document, and then another one at the same sign, for ever.
     if (mark.pos <= begin_) refuse(mark, "a sign that begins no value");
     begin_ = mark.pos;
     document_ = text::DocumentBuilder();
@@ -124,7 +124,7 @@ class Builder : public YAML::EventHandler {
 }  // namespace
 
 std::vector<Json> parseYaml(std::string_view content) {
-  // YAML has no such bytes; the parser takes some of them for the end, and would leave out what follows.
+  // YAML has no such bytes. The parser takes some of them for the end, and would leave out the rest.
   const auto isControl = [](char c) {
     return static_cast<unsigned char>(c) < ' ' && c != '\t' && c != '\n' && c != '\r';
   };

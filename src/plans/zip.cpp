@@ -16,10 +16,10 @@ namespace {
 constexpr std::uint32_t kEnd = 0x06054b50, kDirectory = 0x02014b50, kLocal = 0x04034b50;  // signatures, little-endian
 constexpr std::size_t kEndSize = 22, kDirectorySize = 46, kLocalSize = 30;
 constexpr std::uint32_t kElsewhere = 0xffffffff;  // zip64: the number stands in another record
-constexpr std::size_t kMostPerByte = 1032;        // deflate makes at most this much of a byte
-// Of all files of an archive together, unpacked: plans are some thousand numbers each, and a small archive may be made
-// to take all memory.
-constexpr std::size_t kMostUnpacked = std::size_t{1} << 30;
+constexpr std::size_t kMaxPerByte = 1032;         // deflate makes at most this much of a byte
+// Most bytes of all files of an archive together, unpacked. Plans are some thousand numbers each, and a small archive
+// may be made to take all memory.
+constexpr std::size_t kMaxUnpacked = std::size_t{1} << 30;
 
 [[noreturn]] void refuseArchive(const std::string& what) {
   throw std::invalid_argument("the archive: " + what);
@@ -39,7 +39,7 @@ std::string_view part(std::string_view bytes, std::size_t at, std::size_t size) 
 }
 
 std::string inflated(std::string_view packed, std::size_t size, const std::string& name) {
-  if (size / kMostPerByte > packed.size())
+  if (size / kMaxPerByte > packed.size())
     refuseArchive(fmt::format("'{}' claims {} bytes of {}", name, size, packed.size()));
   std::string out(size, '\0');
   z_stream stream{};
@@ -91,8 +91,8 @@ std::vector<ZipEntry> unzip(std::string_view content) {
                               number(content, std::size_t{local} + 28, 2);
     const std::string_view bytes = part(content, begin, packed);
     unpacked += size;
-    if (unpacked > kMostUnpacked)
-      refuseArchive(fmt::format("unpacked it takes over {} bytes; save the arrays one by one (.npy)", kMostUnpacked));
+    if (unpacked > kMaxUnpacked)
+      refuseArchive(fmt::format("unpacked it takes over {} bytes; save the arrays one by one (.npy)", kMaxUnpacked));
     if (method != 0 && method != 8)
       refuseArchive(fmt::format("'{}' is packed by method {}, which is not read", name, method));
     if (method == 0 && packed != size) refuseArchive(fmt::format("'{}' is stored in another size than its own", name));

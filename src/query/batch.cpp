@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Many motions over threads: queries share nothing but the set-up, so that all that is left is to hand them out; and
-// where stage 2 takes part, the drawing (doc/VISIBILITY.md, "Batches").
+// Many motions over threads. Queries share nothing but the set-up, so this file only hands them out. If stage 2 takes
+// part, it also draws for many motions at once (doc/VISIBILITY.md, "Batches").
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -12,19 +12,19 @@
 #include "query/claim_nothing.h"
 #include "query/manager_impl.h"
 #include "threads/parallel.h"
-#include "visibility/together.h"
+#include "visibility/drawing_pass.h"
 
 namespace fcl_artic {
 namespace {
 
 using visibility::Choice;
+using visibility::DrawingPass;
+using visibility::ExecutorKind;
 using visibility::ExecutorLoan;
-using visibility::Leave;
-using visibility::Together;
-using visibility::Way;
+using visibility::TrialPermit;
 
-/// Motions of a pass of drawing, and of one that is a trial.
-constexpr std::size_t kMostMotions = 256, kMotionsOfTrial = 64;
+/// Most motions in a pass of drawing, and in a trial.
+constexpr std::size_t kMaxMotions = 256, kMotionsOfTrial = 64;
 
 /// Whether stage 2 takes part in such queries, and draws for many at once.
 bool drawsTogether(const CertifiedRequest& request) {
@@ -34,7 +34,7 @@ bool drawsTogether(const CertifiedRequest& request) {
   return request.visibility == VisibilityMode::atOnce || request.work_budget == 0;
 }
 
-/// Adds what another solve of the same query took.
+/// Adds the work of another solve of the same query.
 void addSolve(const QueryStatistics& first, QueryStatistics& sum) {
   addWork(first, sum);
   sum.total_us += first.total_us;
@@ -43,10 +43,11 @@ void addSolve(const QueryStatistics& first, QueryStatistics& sum) {
 }  // namespace
 
 /// Motions that one thread answers, one after the other, or by passes of drawing.
-class ArticulatedCollisionManager::Some {
+class ArticulatedCollisionManager::BatchWithVisibility {
  public:
   /// @param request  without progress.
-  Some(const ArticulatedCollisionManager& manager, const JointMotion* motions, const CertifiedRequest& request)
+  BatchWithVisibility(const ArticulatedCollisionManager& manager, const JointMotion* motions,
+                      const CertifiedRequest& request)
       : manager_(manager), motions_(motions), request_(request), alone_(request), stage2_(*manager.impl_->stage2) {
     alone_.visibility = VisibilityMode::off;
   }
@@ -59,7 +60,7 @@ class ArticulatedCollisionManager::Some {
       if (automatic) {
         done += answerAutomatically(done, left, results + done);
       } else {
-        done += answerTogether(Way::own, done, left, results + done);
+        done += answerTogether(ExecutorKind::own, done, left, results + done);
       }
     }
   }
@@ -68,35 +69,37 @@ class ArticulatedCollisionManager::Some {
   /// @param results  of the motions from `begin` on; so below.
   /// @return how many of them were answered.
   std::size_t answerAutomatically(std::size_t begin, std::size_t left, CertifiedResult* results) {
-    Choice& choice = stage2_.together;
+    Choice& choice = stage2_.batches;
     const bool made = ExecutorLoan::isMade(*stage2_.culler);
     std::size_t n = std::min(left, kMotionsOfTrial);
-    const Leave trial = choice.mayTry(made, static_cast<double>(n));
-    Way way = choice.best();
-    if (way == Way::own && !made) way = Way::without;  // a second context saves no time: contexts take turns
+    const TrialPermit trial = choice.mayTry(made, static_cast<double>(n));
+    ExecutorKind kind = choice.best();
+    if (kind == ExecutorKind::own && !made)
+      kind = ExecutorKind::none;  // a second OpenGL context saves no time: contexts take turns
     if (trial.given()) {
-      answerBothWays(trial, way, begin, n, results);
+      answerBothWays(trial, kind, begin, n, results);
       return n;
     }
     const double start = visibility::steadyMicroseconds();
-    if (way == Way::without) {
-      n = std::min(left, kMostMotions);
+    if (kind == ExecutorKind::none) {
+      n = std::min(left, kMaxMotions);
       answerAlone(begin, n, results);
     } else {
-      n = answerTogether(way, begin, left, results);
+      n = answerTogether(kind, begin, left, results);
     }
     choice.addQueries(visibility::steadyMicroseconds() - start, static_cast<double>(n), 1);
     return n;
   }
 
   /// The answers are those without stage 2.
-  void answerBothWays(const Leave& trial, Way chosen, std::size_t begin, std::size_t n, CertifiedResult* results) {
+  void answerBothWays(const TrialPermit& trial, ExecutorKind chosen, std::size_t begin, std::size_t n,
+                      CertifiedResult* results) {
     const double start = visibility::steadyMicroseconds();
     std::size_t done = 0, telling = 0;
     double stage_us = 0;
     making_us_ = 0;
     std::vector<CertifiedResult> other(n);
-    while (done < n) done += answerTogether(trial.way, begin + done, n - done, other.data() + done);
+    while (done < n) done += answerTogether(trial.kind, begin + done, n - done, other.data() + done);
     const double middle = visibility::steadyMicroseconds();
     answerAlone(begin, n, results);
     const double without_us = visibility::steadyMicroseconds() - middle, with_us = middle - start - making_us_;
@@ -108,9 +111,9 @@ class ArticulatedCollisionManager::Some {
       results[i].statistics.visibility.trials = 1;
     }
     const auto queries = static_cast<double>(n);
-    const double own_us = chosen == Way::without ? without_us : with_us;
-    stage2_.together.addQueries(own_us, queries, 1);
-    stage2_.together.addTrial(
+    const double own_us = chosen == ExecutorKind::none ? without_us : with_us;
+    stage2_.batches.addQueries(own_us, queries, 1);
+    stage2_.batches.addTrial(
         trial, {with_us, without_us, stage_us, with_us + making_us_ + without_us - own_us, telling > 0}, queries);
   }
 
@@ -119,59 +122,61 @@ class ArticulatedCollisionManager::Some {
   }
 
   /// One pass of drawing. @return how many of the motions it took.
-  std::size_t answerTogether(Way way, std::size_t begin, std::size_t left, CertifiedResult* results) {
+  std::size_t answerTogether(ExecutorKind kind, std::size_t begin, std::size_t left, CertifiedResult* results) {
     const double start = visibility::steadyMicroseconds();
-    Together together(*stage2_.culler, way);
-    if (together.made()) making_us_ += visibility::steadyMicroseconds() - start;
-    const std::size_t most = std::min(left, kMostMotions);
+    DrawingPass pass(*stage2_.culler, kind);
+    if (pass.made()) making_us_ += visibility::steadyMicroseconds() - start;
+    const std::size_t most = std::min(left, kMaxMotions);
     if (conditional_.size() < most) conditional_.resize(most);
     if (details_.size() < most) details_.resize(most);
-    together.begin(most);
+    pass.begin(most);
     std::size_t n = 0;
-    for (; n < most && (n == 0 || !together.isFull()); ++n) {
-      const engine::Advisor advisor = together.assume(n, request_.tolerance_distance);
+    for (; n < most && (n == 0 || !pass.isFull()); ++n) {
+      const engine::Advisor advisor = pass.assume(n, request_.tolerance_distance);
       solve(begin + n, advisor, details_[n], conditional_[n]);
     }
-    together.draw();
-    for (std::size_t i = 0; i < n; ++i) settle(together, i, begin + i, results[i]);
+    pass.draw();
+    for (std::size_t i = 0; i < n; ++i) settle(pass, i, begin + i, results[i]);
     return n;
   }
 
-  void solve(std::size_t motion, const engine::Advisor& advisor, Aspects::Details& details, CertifiedResult& result) {
-    Aspects aspects;
-    aspects.stage2 = &advisor;
-    if (request_.certificate) aspects.details = &details;
-    manager_.collideMotion(motions_[motion], alone_, aspects, result);
+  void solve(std::size_t motion, const engine::Advisor& advisor, QueryContext::Details& details,
+             CertifiedResult& result) {
+    QueryContext context;
+    context.stage2 = &advisor;
+    if (request_.certificate) context.details = &details;
+    manager_.collideMotion(motions_[motion], alone_, context, result);
   }
 
-  /// Of motion i of the pass: the answer that was found on a condition, where that holds; else another one.
-  void settle(Together& together, std::size_t i, std::size_t motion, CertifiedResult& result) {
+  /// Answers motion i of the pass: with the answer that was found on a condition if the condition holds, else with
+  /// another one.
+  void settle(DrawingPass& pass, std::size_t i, std::size_t motion, CertifiedResult& result) {
     CertifiedResult& conditional = conditional_[i];
     const bool at_once = request_.visibility == VisibilityMode::atOnce;
     const bool plainly_free = conditional.isFree() && conditional.ignored_initial_contacts.empty();
-    const visibility::QueryVolumes* const volumes = together.volumes(i);
-    const bool holds = together.allFree(i) && (at_once || plainly_free || !volumes);
+    const visibility::QueryVolumes* const volumes = pass.volumes(i);
+    const bool holds = pass.allFree(i) && (at_once || plainly_free || !volumes);
     if (holds) {
       std::swap(result, conditional);
     } else if (at_once) {
-      solve(motion, together.advise(i), details_[i], result);
+      solve(motion, pass.advise(i), details_[i], result);
       addSolve(conditional.statistics, result.statistics);
     } else {
-      Aspects aspects;
-      if (request_.certificate) aspects.details = &details_[i];
-      manager_.collideMotion(motions_[motion], alone_, aspects, result);
+      QueryContext context;
+      if (request_.certificate) context.details = &details_[i];
+      manager_.collideMotion(motions_[motion], alone_, context, result);
       addSolve(conditional.statistics, result.statistics);
     }
-    manager_.impl_->complete(motions_[motion], alone_, details_[i], result);
+    manager_.impl_->finishAnswer(motions_[motion], alone_, details_[i], result);
     if (!volumes) return;
     VisibilityStatistics& s = result.statistics.visibility;
     s = volumes->work();
     if (!at_once) s.nodes = 0;
     s.repeated = !holds && !at_once;
-    s.us = together.microseconds(i);
-    result.statistics.visibility_executor = together.executor();
+    s.us = pass.microseconds(i);
+    result.statistics.visibility_executor = pass.executor();
     result.statistics.visibility_fallback = stage2_.culler->fallbackReason();
-    if (request_.measure_times) result.statistics.total_us += together.drawingMicroseconds(i);
+    if (request_.measure_times) result.statistics.total_us += pass.drawingMicroseconds(i);
   }
 
   const ArticulatedCollisionManager& manager_;
@@ -180,9 +185,9 @@ class ArticulatedCollisionManager::Some {
   CertifiedRequest alone_;  ///< the same without stage 2
   Stage2& stage2_;
   double making_us_ = 0;  ///< of executors
-  // Of the motions of a pass. What is in `conditional_` is no answer before settle() has looked at it.
+  // One entry for each motion of a pass. An entry of `conditional_` is no answer before settle() has looked at it.
   std::vector<CertifiedResult> conditional_;
-  std::vector<Aspects::Details> details_;
+  std::vector<QueryContext::Details> details_;
 };
 
 void ArticulatedCollisionManager::continuousCollide(const std::vector<JointMotion>& motions,
@@ -207,10 +212,11 @@ void ArticulatedCollisionManager::continuousCollide(const std::vector<JointMotio
       return;
     }
     const std::size_t each =
-        std::clamp((motions.size() + threadsFor(threads) - 1) / threadsFor(threads), std::size_t{1}, kMostMotions);
+        std::clamp((motions.size() + threadsFor(threads) - 1) / threadsFor(threads), std::size_t{1}, kMaxMotions);
     parallelFor((motions.size() + each - 1) / each, threads, [&](std::size_t k) {
       const std::size_t begin = k * each;
-      Some(*this, motions.data() + begin, alike).answer(std::min(each, motions.size() - begin), results.data() + begin);
+      BatchWithVisibility(*this, motions.data() + begin, alike)
+          .answer(std::min(each, motions.size() - begin), results.data() + begin);
     });
   });
 }

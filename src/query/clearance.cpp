@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The clearance of a motion by queries with margins. One that is free proves that nothing comes nearer than its margin;
-// a pose proven in contact shows a pair and a time with no more than that between them. The margin goes down by kStep
-// until a query is free, then halves the bracket (by ratio: the tolerance is relative). Measured on a planner's
-// motions: looking at single poses in between, for a tighter upper bound, costs as much as it saves.
+// The clearance of a motion, by queries with margins. A free query proves that nothing comes nearer than its margin. A
+// pose proven in contact shows a pair and a time with no more than the margin between the two bodies. The margin is
+// divided by kStep until a query is free; then each query halves the bracket (by ratio, as the tolerance is relative).
+// Measured on a planner's motions: looking at single poses in between, for a tighter upper bound, costs as much as it
+// saves.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -15,16 +16,16 @@
 #include "fcl_artic/manager.h"
 #include "numerics/assertion.h"
 #include "numerics/shown.h"
-#include "query/aspects.h"
 #include "query/engine_query.h"
+#include "query/query_context.h"
 
 namespace fcl_artic {
 namespace {
 
-/// While nothing is proven free.
+/// Factor between margins while no query is free.
 constexpr double kStep = 4;
-/// A query may leave open what is nearer to its margin than this part of the tolerance. (The margin is at least half
-/// the tolerance below `upper`, so that as much more is below it too.)
+/// A query may leave open pairs that are nearer to its margin than this part of the tolerance. (The margin is at least
+/// half the tolerance below `upper`, so a margin larger by this part is below `upper`, too.)
 constexpr double kOpen = 1.0 / 8;
 
 void require(bool good, const char* name, double value, const char* what) {
@@ -36,13 +37,13 @@ using Pairs = std::vector<engine::PairId>;
 /// The pairs that a query ignores.
 /// @param time  that the query takes.
 /// @param collide  asks it.
-template <class Aspects, class Collide>
+template <class Context, class Collide>
 Pairs pairsIgnored(const TimePart& time, const Collide& collide) {
-  typename Aspects::Details details;
-  Aspects aspects;
-  aspects.time = time;
-  aspects.details = &details;
-  collide(aspects);
+  typename Context::Details details;
+  Context context;
+  context.time = time;
+  context.details = &details;
+  collide(context);
   Pairs pairs;
   for (const engine::Ignored& pair : details.ignored) pairs.push_back(pair.pair);
   return pairs;
@@ -69,7 +70,7 @@ class Search {
 
   Clearance run() {
     if (request_.ignore_initial_contact) ignoreInitialContacts();
-    found_.within_tolerance = query(0) == Found::contact;
+    found_.within_tolerance = query(0) == Verdict::contact;
     double margin = request_.most;
     while (!found_.within_tolerance && decide(margin)) {
       found_.within_tolerance = found_.lower >= request_.most || found_.upper - found_.lower <= tolerance(found_.upper);
@@ -79,20 +80,20 @@ class Search {
   }
 
  private:
-  enum class Found { free, contact, open };
+  enum class Verdict { free, contact, open };
 
   double tolerance(double distance) const {
     return std::max(request_.tolerance_relative * distance, request_.tolerance_distance);
   }
 
-  /// Asks whether anything comes so near; where that stays open, whether it comes a little less near.
+  /// Asks with this margin; if the answer is open, with a slightly larger one.
   bool decide(double margin) {
-    return query(margin) != Found::open || query(margin + kOpen * tolerance(margin)) != Found::open;
+    return query(margin) != Verdict::open || query(margin + kOpen * tolerance(margin)) != Verdict::open;
   }
 
-  /// Asks, with what is left of the budget. Sets spent_ where nothing is, and the answer is none.
-  template <class Asked>
-  void answer(CertifiedRequest& request, const Asked& ask) {
+  /// Asks with the rest of the budget. If nothing is left of it, sets spent_ and does not ask.
+  template <class AskQuery>
+  void answer(CertifiedRequest& request, const AskQuery& ask) {
     static_cast<Scope&>(request) = request_;
     if (request_.progress) request.progress = [this](double) { return request_.progress(found_.lower, found_.upper); };
     if (request_.work_budget) {
@@ -108,8 +109,8 @@ class Search {
     spent_ = result_.status == Status::undecided;
   }
 
-  /// (Which pairs these are is known before the search begins, so that a contact does not end it too soon: with
-  /// ContactMode::first all pairs are looked at as they begin.)
+  /// Finds the pairs whose initial contacts are ignored, before the search begins. A contact does not end this query
+  /// too soon: with ContactMode::first all pairs are looked at at their begin.
   void ignoreInitialContacts() {
     CertifiedRequest request;
     request.margin = request_.ignored_margin;
@@ -119,28 +120,28 @@ class Search {
     found_.ignored_initial_contacts = result_.ignored_initial_contacts;
   }
 
-  Found query(double margin) {
-    if (spent_) return Found::open;
+  Verdict query(double margin) {
+    if (spent_) return Verdict::open;
     CertifiedRequest request;
     request.margin = margin;
     request.tolerance_time *= duration_;
     request.mode = ContactMode::any;
     request.tolerance_distance = margin > 0 ? kOpen * tolerance(margin) : request.tolerance_distance;
     answer(request, [&] { ask_(request, left_out_, result_); });
-    if (spent_) return Found::open;
+    if (spent_) return Verdict::open;
     if (result_.isFree()) {
       found_.lower = std::max(found_.lower, margin);
-      return Found::free;
+      return Verdict::free;
     }
     const auto proven = std::find_if(result_.contacts.begin(), result_.contacts.end(),
                                      [](const CertifiedContact& contact) { return contact.certain; });
-    if (proven == result_.contacts.end()) return Found::open;
+    if (proven == result_.contacts.end()) return Verdict::open;
     FCL_ARTIC_ASSERT(found_.lower <= margin);
     found_.upper = margin;
     found_.time = proven->t_upper;
     found_.body1 = proven->body1;
     found_.body2 = proven->body2;
-    return Found::contact;
+    return Verdict::contact;
   }
 
   ClearanceRequest request_;
@@ -157,11 +158,11 @@ class Search {
 
 Clearance ArticulatedCollisionManager::clearance(const JointMotion& motion, const ClearanceRequest& request) const {
   const auto ask = [&](const CertifiedRequest& asked, const Pairs& left_out, CertifiedResult& result) {
-    collideMotion(motion, asked, Aspects::ofClearance(left_out), result);
+    collideMotion(motion, asked, QueryContext::ofClearance(left_out), result);
   };
   const auto ask_begin = [&](const CertifiedRequest& asked, CertifiedResult& result) {
-    return pairsIgnored<Aspects>(TimePart(),
-                                 [&](const Aspects& aspects) { collideMotion(motion, asked, aspects, result); });
+    return pairsIgnored<QueryContext>(
+        TimePart(), [&](const QueryContext& context) { collideMotion(motion, asked, context, result); });
   };
   return Search(request, 1, ask, ask_begin).run();
 }
@@ -170,11 +171,11 @@ Clearance ArticulatedCollisionManager::clearance(const JointTrajectory& trajecto
                                                  const ClearanceRequest& request) const {
   trajectory.requireOf(tree());
   const auto ask = [&](const CertifiedRequest& asked, const Pairs& left_out, CertifiedResult& result) {
-    collideTrajectory(trajectory, asked, Aspects::ofClearance(left_out), result);
+    collideTrajectory(trajectory, asked, QueryContext::ofClearance(left_out), result);
   };
   const auto ask_begin = [&](const CertifiedRequest& asked, CertifiedResult& result) {
-    return pairsIgnored<Aspects>(partOfTime(trajectory, 0), [&](const Aspects& aspects) {
-      collideMotion(trajectory.piece(0), asked, aspects, result);
+    return pairsIgnored<QueryContext>(partOfTime(trajectory, 0), [&](const QueryContext& context) {
+      collideMotion(trajectory.piece(0), asked, context, result);
     });
   };
   return Search(request, trajectory.endTime() - trajectory.beginTime(), ask, ask_begin).run();

@@ -26,7 +26,7 @@ const T& require(const T* pointer, const char* what) {
 
 /// One of the two bodies, read.
 template <class S>
-struct Body {
+struct FclBody {
   const fcl::CollisionGeometry<S>* geometry;
   std::shared_ptr<const ShapeTree> shape;  ///< of an OcTree: null until readCells()
   BodyMotion motion;
@@ -43,32 +43,32 @@ std::shared_ptr<const ShapeTree> readShape(const fcl::CollisionGeometry<S>* geom
 }
 
 template <class S>
-Body<S> read(const fcl::CollisionGeometry<S>* geometry, const fcl::MotionBase<S>* motion) {
+FclBody<S> read(const fcl::CollisionGeometry<S>* geometry, const fcl::MotionBase<S>* motion) {
   return {geometry, readShape(geometry), readMotion(require(motion, "motion"))};
 }
 
 template <class S>
-Body<S> read(const fcl::CollisionGeometry<S>* geometry, const fcl::Transform3<S>& begin, const fcl::Transform3<S>& end,
-             fcl::CCDMotionType type) {
+FclBody<S> read(const fcl::CollisionGeometry<S>* geometry, const fcl::Transform3<S>& begin,
+                const fcl::Transform3<S>& end, fcl::CCDMotionType type) {
   return {geometry, readShape(geometry),
           motionBetween(readTransform<S>(begin, "its start"), readTransform<S>(end, "its end"), type)};
 }
 
 template <class S>
-Body<S> read(const fcl::CollisionObject<S>* object, const fcl::Transform3<S>& end, fcl::CCDMotionType type) {
+FclBody<S> read(const fcl::CollisionObject<S>* object, const fcl::Transform3<S>& end, fcl::CCDMotionType type) {
   if (!object) throw std::invalid_argument("it is null");
   return read<S>(object->collisionGeometry().get(), object->getTransform(), end, type);
 }
 
 template <class S>
-Body<S> read(const fcl::ContinuousCollisionObject<S>* object) {
+FclBody<S> read(const fcl::ContinuousCollisionObject<S>* object) {
   if (!object) throw std::invalid_argument("it is null");
   return read<S>(object->collisionGeometry().get(), object->getMotion());
 }
 
-/// Reads object 1 or 2; what is wrong with it is said with that number.
+/// Reads object 1 or 2; errors name the number.
 template <class S, class... Args>
-Body<S> body(int number, const Args&... args) {
+FclBody<S> body(int number, const Args&... args) {
   try {
     return read<S>(args...);
   } catch (const std::invalid_argument& e) {
@@ -88,11 +88,11 @@ bool standsStill(const BodyMotion& motion) {
                      [](const MotionElement& element) { return !element.bounded && element.degree() == 0; });
 }
 
-/// Reads an OcTree's cells, the others of the two bodies being read: of one that stands still only those that the other
-/// body can come to, as most of a map is far from any one motion.
+/// Reads an OcTree's cells. If the other body is an OcTree too, it has been read. If the tree stands still, only those
+/// cells are read that the other body can come to: most of a map is far from any one motion.
 /// @param all  all cells: a certificate is about the whole map.
 template <class S>
-void readCells(Body<S>& tree, const Body<S>& other, double margin, bool all) {
+void readCells(FclBody<S>& tree, const FclBody<S>& other, double margin, bool all) {
 #if FCL_HAVE_OCTOMAP
   const auto& octree = static_cast<const fcl::OcTree<S>&>(*tree.geometry);
   Eigen::Vector3d lower, upper;
@@ -104,7 +104,7 @@ void readCells(Body<S>& tree, const Body<S>& other, double margin, bool all) {
     RigidTransform& first = seen.elements.empty() ? seen.after : seen.elements.front().before;
     first = tree.motion.poseWithError(0).inverse() * first;
     enclosePath(seen, other.shape->lower(), other.shape->upper(), lower, upper);
-    // What the path's own pads do not know of: these sums.
+    // The path's own pads do not include the rounding of these sums.
     const double size = (upper - lower).norm() + lower.norm();
     const double pad = margin + 0x1p-40 * (first.length() + size + margin);
     lower.array() -= pad;
@@ -117,7 +117,7 @@ void readCells(Body<S>& tree, const Body<S>& other, double margin, bool all) {
 }
 
 template <class S>
-void answer(Body<S>&& body1, Body<S>&& body2, const CertifiedPairRequest& request, CertifiedPairResult& result) {
+void answer(FclBody<S>&& body1, FclBody<S>&& body2, const CertifiedPairRequest& request, CertifiedPairResult& result) {
   const double margin = marginsOf(request).largest();
   const bool all = request.certificate;
   if (!body1.shape && !body2.shape && !standsStill(body2.motion)) readCells(body2, body1, margin, all);
@@ -136,7 +136,7 @@ float roundedDown(double t, float) {
   return static_cast<double>(rounded) > t ? std::nextafter(rounded, 0.0f) : rounded;
 }
 
-/// What FCL's result says while nothing is proven.
+/// Sets FCL's result to the values that it has while nothing is proven.
 template <class S>
 void reset(fcl::ContinuousCollisionResult<S>& result) {
   result.is_collide = true;
@@ -149,8 +149,8 @@ void reset(CertifiedPairResult& result) {
   result = CertifiedPairResult();
 }
 
-/// Runs a query; a result that it can't give is reset. Not before: the input may lie in the result, where someone goes
-/// on from the poses of the last query.
+/// Runs a query. If it throws, the result is reset. It is not reset before: the input may lie in the result, if a
+/// caller goes on from the poses of the last query.
 template <class Result, class Query>
 auto answering(Result& result, Query&& query) {
   return resetUnlessAnswered([&] { reset(result); }, query);
@@ -163,8 +163,9 @@ CertifiedPairRequest certified(const fcl::ContinuousCollisionRequest<S>& request
     throw std::invalid_argument("the request's toc_err is " + shown(tolerance) + ", not a tolerance of time");
   }
   constexpr double kFinest = 1e-12;  // a few thousand ulp of t = 1: doubles can separate no less
-  // Narrower brackets than these are no dearer, wider ones are: more of the bodies is looked at in a wider interval
-  // (a link among pipes: 0.19 ms for 1e-4, 0.33 ms for 1e-2, 5 ms for 0.3). A narrower one is within what is asked for.
+  // A bracket narrower than this takes no more time. A wider one takes more, as more of the bodies is looked at in a
+  // wider interval (a link among pipes: 0.19 ms for 1e-4, 0.33 ms for 1e-2, 5 ms for 0.3). A narrower bracket satisfies
+  // the request, too.
   constexpr double kCoarsest = 1e-4;
   CertifiedPairRequest certified;
   certified.tolerance_time = std::min(std::max(tolerance, kFinest), kCoarsest);
@@ -173,7 +174,7 @@ CertifiedPairRequest certified(const fcl::ContinuousCollisionRequest<S>& request
 }
 
 template <class S>
-S answer(Body<S>&& body1, Body<S>&& body2, const fcl::ContinuousCollisionRequest<S>& request,
+S answer(FclBody<S>&& body1, FclBody<S>&& body2, const fcl::ContinuousCollisionRequest<S>& request,
          fcl::ContinuousCollisionResult<S>& result) {
   CertifiedPairResult proven;
   answer(std::move(body1), std::move(body2), certified(request), proven);

@@ -24,7 +24,7 @@ namespace {
 using Object = fcl::ContinuousCollisionObjectd;
 using Geometry = fcl::CollisionGeometryd;
 
-/// Where boxes end that have no end: far beyond all coordinates allowed (1e9 m), and a number, as trees are built of
+/// Ends of unbounded boxes: far beyond all coordinates allowed (1e9 m), but finite, as trees are built of finite
 /// numbers.
 constexpr double kFarAway = 1e29;
 
@@ -145,7 +145,7 @@ class Earliest {
 
     const CertifiedPairResult& r = pair.result;
     if (request_.mode == ContactMode::any && r.status == Status::contact && r.certain) {
-      // The pairs that follow are not asked, so that nothing is claimed of any time before the contact.
+      // The pairs that follow are not asked, so nothing is claimed about the time before the contact.
       first_ = {};
       engine::joinLower(first_, 0);
       engine::joinUpper(first_, engine::provenBy(r));
@@ -195,7 +195,7 @@ class Earliest {
 
   CertifiedPairRequest request_;
   CertifiedPairsResult& result_;
-  engine::FirstContact first_;  ///< of all pairs that are not free; of the one pair where any contact ended the search
+  engine::FirstContact first_;  ///< of all pairs that are not free; if any contact ended the search, of its pair
   Clock::time_point begin_;
 };
 

@@ -28,8 +28,8 @@ void requireTolerance(double x, const char* name, bool positive) {
 }  // namespace
 
 WorkspaceLoan::WorkspaceLoan() {
-  thread_local Workspace own;
-  if (own.busy_) other_ = std::make_unique<Workspace>();
+  thread_local QueryWorkspace own;
+  if (own.busy_) other_ = std::make_unique<QueryWorkspace>();
   workspace_ = other_ ? other_.get() : &own;
   workspace_->busy_ = true;
 }
@@ -54,12 +54,13 @@ engine::Query makeQuery(const CertifiedPairRequest& request) {
   query.tolerance_distance = request.tolerance_distance;
   query.margins = margins;
   query.every_pair = request.mode == ContactMode::firstOfEveryPair;
-  // The paper's method looks for the first contact; the pairs that it leaves to the standard one then take part in
-  // that.
+  // The paper's method looks for the first contact, so the pairs that it leaves to the standard one are asked for
+  // theirs, too.
   query.any = request.mode == ContactMode::any && request.method == Method::standard;
   query.ignore_initial = request.ignore_initial_contact;
   query.measure_times = request.measure_times;
-  // A link may have several geometries: more than one contact is chosen when all are known (keepFirstOfEachPair).
+  // A link may have several geometries. So if more than one contact is asked for, all are found, and
+  // keepFirstOfEachPair() chooses.
   query.max_contacts = request.max_contacts <= 1 ? static_cast<std::int32_t>(request.max_contacts) : 1 << 20;
   query.work_budget = request.work_budget;
   if (request.progress) {
@@ -98,8 +99,9 @@ void keepFirstOfEachPair(bool certain, std::vector<CertifiedContact>& contacts) 
     return std::make_tuple(x.t_lower, !x.certain, x.t_upper) < std::make_tuple(y.t_lower, !y.certain, y.t_upper);
   });
   if (certain) {
-    // What proves the answer comes first, though another one that is not proven, or later, may begin a little earlier:
-    // its bracket then begins with that one's. (A pair that is free before a time is so before an earlier one.)
+    // The contact that proves the answer comes first. Another contact, which is not proven or is proven later, may
+    // begin a little earlier. The bracket of the first one then begins with that one's. This stays true: a pair that is
+    // free before a time is free before any earlier time.
     const auto proof = std::min_element(contacts.begin(), contacts.end(), [](const auto& x, const auto& y) {
       return std::make_tuple(!x.certain, x.t_upper) < std::make_tuple(!y.certain, y.t_upper);
     });

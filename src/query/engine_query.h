@@ -19,7 +19,7 @@
 namespace fcl_artic {
 
 /// Memory of one query at a time. Nothing in it reaches the next answer.
-class Workspace {
+class QueryWorkspace {
  public:
   engine::EngineWorkspace engine;
   redon::Workspace& redon() {
@@ -49,12 +49,12 @@ class WorkspaceLoan {
   ~WorkspaceLoan() { workspace_->busy_ = false; }
   WorkspaceLoan(const WorkspaceLoan&) = delete;
   WorkspaceLoan& operator=(const WorkspaceLoan&) = delete;
-  Workspace& operator*() const { return *workspace_; }
-  Workspace* operator->() const { return workspace_; }
+  QueryWorkspace& operator*() const { return *workspace_; }
+  QueryWorkspace* operator->() const { return workspace_; }
 
  private:
-  std::unique_ptr<Workspace> other_;
-  Workspace* workspace_;
+  std::unique_ptr<QueryWorkspace> other_;
+  QueryWorkspace* workspace_;
 };
 
 /// The margins that a request asks for; of pairs that have none of their own. Nothing else reads a request's margins.

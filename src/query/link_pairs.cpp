@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What pairs of links do over all values within their joints' limits. A pair is "never" by proof alone; everything else
-// here only saves that proof its work, or shows what hinders it. Neighbours are looked at so before each set-up of the
-// robot, with less work.
+// Finds how pairs of links touch over all values within their joints' limits: never, sometimes or always. A pair is
+// "never" by proof alone; everything else here only saves that proof its work, or shows what hinders it. Neighbours are
+// looked at so before each set-up of the robot, with less work.
 #include <cmath>
 #include <deque>
 #include <functional>
@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "kinematics/angles.h"
 #include "numerics/shown.h"
 #include "query/engine_query.h"
 #include "query/manager_impl.h"
@@ -24,18 +25,20 @@
 namespace fcl_artic {
 namespace {
 
-/// Work for a first try, which a third of the pairs that never touch need no more than.
+/// Work for a first try. It is enough for a third of the pairs that never touch.
 constexpr std::uint64_t kFirstWork = 4000;
-/// Searches for a contact before the proof, besides one from where the first try failed, and after a proof that failed;
-/// each from another configuration. Measured on TALOS: 1,000 samples find contacts of 482 pairs, the search from where
-/// the first try failed brings them to 873, two more to 879, eight more to 884.
+/// Numbers of searches for a contact, before the proof and after a proof that failed, each from another configuration.
+/// One more search begins where the first try failed. Measured on TALOS: 1,000 samples find contacts of 482 pairs. The
+/// search from where the first try failed brings them to 873, two more to 879, eight more to 884.
 constexpr std::size_t kSearches = 2, kMoreSearches = 8;
-/// All proofs of one pair with balls may take as much work as the one without, each of them half of that. Measured on
-/// TALOS: an eighth each leaves 9 of 335 pairs unproven, all of the work for each proves no more in 1.1 times as long.
+/// Each proof of a pair with balls may take half as much work as the proof without, all of them together as much.
+/// Measured on TALOS: with an eighth for each, 9 of 335 pairs stay unproven; with all of the work for each, no more
+/// pairs are proven, in 1.1 times the time.
 constexpr std::uint64_t kPartPerCut = 2;
 
-/// Configurations tried of neighbours, and work per pair of geometries: a millisecond or two where the links touch
-/// throughout, some ten where a proof fails (test/data/robots_test.cpp measures the set-up of public robots).
+/// Number of configurations tried for two neighbours, and work per pair of their geometries. This takes a millisecond
+/// or two if the links touch throughout, and some ten if a proof fails (test/data/robots_test.cpp measures the set-up
+/// of public robots).
 constexpr std::size_t kSamplesOfNeighbours = 32;
 constexpr std::uint64_t kWorkOfNeighbours = 50000;
 
@@ -45,9 +48,9 @@ struct Pair {
   std::vector<std::size_t> numbers;
 };
 
-/// Values of a variable to try: its limits; of an angle without any, a turn. A slide without limits stays at 0.
+/// The range of a variable to try: its limits, or a whole turn for an angle without any. A slide without limits stays
+/// at 0.
 ValueRange rangeToTry(const KinematicTree& tree, int variable) {
-  constexpr double kPi = 3.141592653589793;
   const Joint& joint = tree.joint(tree.variableJoint(variable));
   if (hasLimits(joint) && std::isfinite(joint.upper - joint.lower)) return {joint.lower, joint.upper};
   return tree.isAngle(variable) ? ValueRange{-kPi, kPi} : ValueRange{0, 0};
@@ -76,7 +79,7 @@ class EvenlySpread {
 class Classifier {
  public:
   Classifier(const KinematicTree& tree, const engine::Problem& problem, const Pair& pair,
-             const LinkPairOptions& options, Workspace& workspace)
+             const LinkPairOptions& options, QueryWorkspace& workspace)
       : tree_(tree), problem_(problem), pair_(pair), options_(options), workspace_(workspace) {
     for (const std::size_t number : pair.numbers) {
       proofs_.emplace_back(tree, problem, problem.link_pairs[number], options.margin, workspace.engine);
@@ -91,8 +94,8 @@ class Classifier {
   /// at the one link or at the other.)
   const std::vector<int>& variables() const { return variables_; }
 
-  /// Finds no more than whether the links touch nowhere, somewhere, or throughout: with touching configurations looked
-  /// for first, as of neighbours that is what is mostly so.
+  /// Finds only whether the links touch nowhere, somewhere, or throughout. Touching configurations are looked for
+  /// first: most neighbours touch throughout.
   /// @param[out] finding  all but the names.
   void runShort(LinkPairFinding& finding) {
     finding.nearest = std::numeric_limits<double>::infinity();
@@ -109,8 +112,8 @@ class Classifier {
     setTouching(finding);
   }
 
-  /// Of links that touch at all configurations that runShort() tries: which of their geometries, each with each, are
-  /// apart at one of these. A housing that overlaps in the joint excuses no other part of the two links.
+  /// For links that touch at all configurations that runShort() tries: says for each pair of their geometries whether
+  /// it is apart at one of these. A housing that overlaps in the joint excuses no other part of the two links.
   /// @return empty: none, or no joint moves them.
   std::vector<bool> apartSomewhere() {
     std::vector<bool> apart(proofs_.size());
@@ -157,13 +160,13 @@ class Classifier {
     finding.kind = kind;
     finding.proven = proven;
   }
-  /// Of links that touch in some configuration, or in all that were tried.
+  /// For links that touch in some configuration, or in all that were tried.
   void setTouching(LinkPairFinding& finding) const {
     finding.nearest = options_.margin;
     const bool always = finding.apart == 0;
     set(finding, always ? LinkPairKind::always : LinkPairKind::sometimes, !always || variables().empty());
   }
-  /// Proven: what was tried before is of no interest.
+  /// The pair is proven apart: earlier tries are forgotten.
   static void setNever(LinkPairFinding& finding) {
     finding.tried = finding.apart = 0;
     finding.configuration.resize(0);
@@ -175,7 +178,7 @@ class Classifier {
   bool prove(std::uint64_t work, bool balls) {
     for (std::size_t i = 0; i < proofs_.size(); ++i) {
       if (proven_[i] || (balls && proveWithBalls(i, work))) continue;
-      const RangeProof::Finding found = proofs_[i].prove(work);
+      const RangeProof::Result found = proofs_[i].prove(work);
       if (!found.apart) {
         failed_at_ = inOrder(proofs_[i], found.values);
         return false;
@@ -185,14 +188,15 @@ class Classifier {
     return true;
   }
 
-  /// Two geometries, with balls in the place of the links and the joints next to them (doc/NUMERICS.md, Lemma 10).
+  /// Proves two geometries apart, with balls in place of the links and the joints next to them (doc/NUMERICS.md, Lemma
+  /// 10).
   bool proveWithBalls(std::size_t number, std::uint64_t work) {
     std::uint64_t left = work;
     for (const RangeProof::Cut& cut : proofs_[number].cuts()) {
       RangeProof proof(tree_, problem_, problem_.link_pairs[pair_.numbers[number]], options_.margin, workspace_.engine,
                        cut);
       if (touches(proof)) continue;
-      const RangeProof::Finding found = proof.prove(std::min(left, work / kPartPerCut));
+      const RangeProof::Result found = proof.prove(std::min(left, work / kPartPerCut));
       if (found.apart) return proven_[number] = true;
       left -= std::min(left, found.work);
       if (left == 0) break;
@@ -235,7 +239,7 @@ class Classifier {
     return most;
   }
 
-  /// One of a row of values spread evenly over ranges.
+  /// Number `number` of a sequence of values that is spread evenly over ranges.
   static std::vector<double> spread(const std::vector<ValueRange>& ranges, std::size_t number) {
     const EvenlySpread place(ranges.size());
     std::vector<double> values(ranges.size());
@@ -246,8 +250,8 @@ class Classifier {
     return values;
   }
 
-  /// The configuration that is tried so many after the first: the robot at rest, all joints at 0 or as near as their
-  /// limits let them.
+  /// The configuration number `sample` that is tried. The first is the robot at rest: all joints at 0, or as near as
+  /// their limits let them.
   std::vector<double> valuesToTry(std::size_t sample) const {
     if (sample > 0) return spread(ranges_, sample);
     std::vector<double> values;
@@ -255,7 +259,7 @@ class Classifier {
     return values;
   }
 
-  /// Tries configurations, until so many are tried.
+  /// Tries configurations, until `samples` are tried.
   void tryConfigurations(std::size_t samples, LinkPairFinding& finding) {
     for (; finding.tried < samples; ++finding.tried) {
       const std::vector<double> values = valuesToTry(finding.tried);
@@ -302,7 +306,7 @@ class Classifier {
   const engine::Problem& problem_;
   const Pair& pair_;
   const LinkPairOptions& options_;
-  Workspace& workspace_;
+  QueryWorkspace& workspace_;
   std::deque<RangeProof> proofs_;  ///< of the links' geometries, each with each
   std::vector<bool> proven_;       ///< which of them are
   std::vector<int> variables_;
@@ -325,7 +329,7 @@ std::vector<Pair> pairsOf(const Registry& registry, const engine::Problem& probl
   return all;
 }
 
-/// What proofs and findings of a pair of geometries are good for.
+/// The shapes and joints for which proofs and findings of a pair of geometries hold.
 PairMaking makingOf(const Registry& registry, const engine::LinkPair& pair) {
   return PairMaking::inOrder(*registry.tree(), registry.body(pair.a), registry.body(pair.b));
 }

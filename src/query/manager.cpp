@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The manager as users hold it: changes go to the registry, and mark what they make out of date in the set-up.
+// The manager that users hold. A change goes to the registry, and marks the parts of the set-up that it makes out of
+// date.
 #include "fcl_artic/manager.h"
 
 #include <algorithm>

@@ -11,8 +11,8 @@
 
 #include "certificate/certificate.h"
 #include "fcl_artic/manager.h"
-#include "query/aspects.h"
 #include "query/engine_query.h"
+#include "query/query_context.h"
 #include "setup/neighbour_findings.h"
 #include "setup/registry.h"
 #include "setup/setup.h"
@@ -27,9 +27,9 @@ struct Stage2 {
       : culler(std::move(by)),
         standard(visibility::ExecutorLoan::makingCost(*culler)),
         redon(visibility::ExecutorLoan::makingCost(*culler)),
-        together(visibility::ExecutorLoan::makingCost(*culler)) {}
+        batches(visibility::ExecutorLoan::makingCost(*culler)) {}
   std::shared_ptr<const VisibilityCuller> culler;
-  visibility::Choice standard, redon, together;  ///< together: batches, by Method::standard
+  visibility::Choice standard, redon, batches;  ///< the last one by Method::standard
 };
 
 /// Finds out what neighbours do over all values of the joint between them (setup/neighbour_findings.h). It looks at
@@ -58,13 +58,13 @@ struct ArticulatedCollisionManager::Impl {
   }
   /// Adds a motion that was answered to what a certificate claims.
   /// @param time  the part of the obstacles' time that it takes.
-  void add(const JointMotion& motion, const TimePart& time, const CertifiedRequest& request, const Bracket& answer,
-           const Aspects::Details& details, certificate::Claim& claim) const;
+  void appendClaim(const JointMotion& motion, const TimePart& time, const CertifiedRequest& request,
+                   const Bracket& answer, const QueryContext::Details& details, certificate::Claim& claim) const;
 
   /// Adds what an answer has beyond the solver's: its certificate, allowed pairs, no more contacts than asked for.
   /// @param details  of the answer; read where the request asks for a certificate.
-  void complete(const JointMotion& motion, const CertifiedRequest& request, const Aspects::Details& details,
-                CertifiedResult& result) const;
+  void finishAnswer(const JointMotion& motion, const CertifiedRequest& request, const QueryContext::Details& details,
+                    CertifiedResult& result) const;
 
   /// @throws std::logic_error where what queries read is not up to date.
   void requireReady() const {

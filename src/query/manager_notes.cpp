@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the manager says of pairs that no query checks: neighbours that touch throughout, and bodies that stand still
+// The manager's notes on pairs that no query checks: neighbours that touch throughout, and bodies that stand still
 // against each other.
 #include <map>
 #include <set>
@@ -25,7 +25,7 @@ std::vector<LinkPairFinding> ArticulatedCollisionManager::neighbours() const {
 
 namespace {
 
-/// Pairs that stand still against each other (Registry::standStill()) and touch, or can't be told apart, by names.
+/// Names of pairs that stand still against each other (Registry::standStill()) and touch, or can't be proven apart.
 std::set<std::pair<std::string, std::string>> touchingStill(const Registry& registry) {
   const KinematicTree& tree = *registry.tree();
   FrameSweep sweep = FrameSweep::fromWorld(tree);
@@ -53,7 +53,7 @@ std::set<std::pair<std::string, std::string>> touchingStill(const Registry& regi
   CertifiedPairRequest request;
   request.max_contacts = 0;
   CertifiedPairResult result;
-  const auto look = [&](const Placed& a, const Placed& b) {
+  const auto noteTouching = [&](const Placed& a, const Placed& b) {
     const bool said = b.body->link < 0 ? !registry.mayTouch(*a.body, *b.body)
                                        : registry.allowed().allowed(a.body->name, b.body->name) ||
                                              a.body->mayTouchLink(*b.body) || b.body->mayTouchLink(*a.body);
@@ -66,7 +66,7 @@ std::set<std::pair<std::string, std::string>> touchingStill(const Registry& regi
   for (const auto& [carrier, bodies] : by_carrier) {
     for (std::size_t i = 0; i < bodies.size() && bodies[i].body->link >= 0; ++i) {  // links first
       for (std::size_t j = i + 1; j < bodies.size(); ++j) {
-        if (bodies[i].body->link != bodies[j].body->link) look(bodies[i], bodies[j]);
+        if (bodies[i].body->link != bodies[j].body->link) noteTouching(bodies[i], bodies[j]);
       }
     }
   }

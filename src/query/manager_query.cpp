@@ -9,24 +9,24 @@
 #include "model/add_fields.h"
 #include "motion/half_angles.h"
 #include "narrowphase/engine_workspace.h"
-#include "query/aspects.h"
 #include "query/claim_nothing.h"
 #include "query/engine_query.h"
 #include "query/manager_impl.h"
+#include "query/query_context.h"
 #include "query/report.h"
 #include "visibility/solve.h"
 
 namespace fcl_artic {
 namespace {
 
-/// What tables of two links know of a motion, as the solver's advisor.
+/// Gives the solver, as its advisor, all knowledge about a motion that the tables of two links have.
 struct TableAdvice {
   const LinkTables& tables;
   const ProvenPairs& proven;
   const engine::Problem& problem;
   const JointMotion& motion;
   const engine::Margins& margins;
-  Workspace& workspace;
+  QueryWorkspace& workspace;
 
   engine::Advisor advisor() {
     engine::Advisor advisor;
@@ -56,7 +56,7 @@ struct TableAdvice {
   }
 };
 
-/// The motion's variables, then those of the moving obstacles.
+/// Gives the query the motion's variables, then those of the moving obstacles.
 /// @param moving  the latter, column k for t^k.
 /// @param time  of the obstacles' motions.
 /// @param memory  for them, when there are both.
@@ -81,8 +81,8 @@ void setVariables(const JointMotion& motion, const Eigen::MatrixXd& moving, cons
   query.degree = static_cast<std::int32_t>(columns) - 1;
 }
 
-/// Leaves the link pairs that the request asks for. Those with moving obstacles are the scene's, though they stand with
-/// those of two links.
+/// Keeps the link pairs that the request asks for. Pairs of a link and a moving obstacle count as the scene's, though
+/// they stand in the list of link pairs.
 void restrictPairs(const CertifiedRequest& request, const Setup& setup, engine::Problem& problem,
                    engine::Margins& margins) {
   const std::int32_t num_self_pairs = setup.numSelfPairs(), num_self_rows = setup.numSelfRows();
@@ -102,7 +102,7 @@ void restrictPairs(const CertifiedRequest& request, const Setup& setup, engine::
 }
 
 /// Allows pairs of a problem that is restricted already.
-void leaveOut(const std::vector<engine::PairId>& pairs, Workspace& workspace, engine::Problem& problem) {
+void leaveOut(const std::vector<engine::PairId>& pairs, QueryWorkspace& workspace, engine::Problem& problem) {
   FCL_ARTIC_ASSERT(!problem.link_allowed);
   std::vector<std::uint8_t>&scene = workspace.scene_allowed, &links = workspace.link_allowed;
   scene.assign(static_cast<std::size_t>(problem.num_scene_pairs), 0);
@@ -117,7 +117,7 @@ void leaveOut(const std::vector<engine::PairId>& pairs, Workspace& workspace, en
   problem.link_allowed = links.data();
 }
 
-/// What a solver says, with its stage 2.
+/// A solver's answer, and the reports of stage 2 and of the paper's method.
 struct Solved {
   engine::Answer answer;
   visibility::Report stage;
@@ -126,7 +126,7 @@ struct Solved {
 
 /// @param advisor  takes the place of stage 2; null: the request's.
 void solve(const Registry& registry, Stage2& stage2, const engine::Advisor* advisor, const CertifiedRequest& request,
-           const engine::Problem& problem, engine::Query& query, Workspace& workspace, Solved& solved) {
+           const engine::Problem& problem, engine::Query& query, QueryWorkspace& workspace, Solved& solved) {
   if (advisor) {
     FCL_ARTIC_ASSERT(request.method == Method::standard);
     query.ask(*advisor);
@@ -181,9 +181,10 @@ QueryStatistics workOf(const Solved& solved) {
 
 }  // namespace
 
-void ArticulatedCollisionManager::Impl::add(const JointMotion& motion, const TimePart& time,
-                                            const CertifiedRequest& request, const Bracket& answer,
-                                            const Aspects::Details& details, certificate::Claim& claim) const {
+void ArticulatedCollisionManager::Impl::appendClaim(const JointMotion& motion, const TimePart& time,
+                                                    const CertifiedRequest& request, const Bracket& answer,
+                                                    const QueryContext::Details& details,
+                                                    certificate::Claim& claim) const {
   const std::shared_ptr<const certificate::World> about = world();
   certificate::Motion stated = certificate::motionOf(*about, motion, time);
   certificate::claimAnswer(request, answer, stated);
@@ -206,14 +207,15 @@ void ArticulatedCollisionManager::Impl::add(const JointMotion& motion, const Tim
   claim.pieces.push_back(std::move(stated));
 }
 
-void ArticulatedCollisionManager::Impl::complete(const JointMotion& motion, const CertifiedRequest& request,
-                                                 const Aspects::Details& details, CertifiedResult& result) const {
+void ArticulatedCollisionManager::Impl::finishAnswer(const JointMotion& motion, const CertifiedRequest& request,
+                                                     const QueryContext::Details& details,
+                                                     CertifiedResult& result) const {
   const JointMotion* const motions[] = {&motion};
   countUnchecked(motions, 1, request, true, result);
   result.certificate.reset();
   if (request.certificate) {
     certificate::Claim claim;
-    add(motion, TimePart(), request, result, details, claim);
+    appendClaim(motion, TimePart(), request, result, details, claim);
     result.certificate = std::make_shared<const Certificate>(certificate::makeCertificate(*world(), claim));
   }
   if (result.contacts.size() > request.max_contacts) result.contacts.resize(request.max_contacts);
@@ -226,15 +228,15 @@ void ArticulatedCollisionManager::continuousCollide(const JointMotion& motion, c
 
 void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const CertifiedRequest& request,
                                                 CertifiedResult& result) const {
-  Aspects aspects;
-  Aspects::Details details;
-  if (request.certificate) aspects.details = &details;
-  collideMotion(motion, request, aspects, result);
-  impl_->complete(motion, request, details, result);
+  QueryContext context;
+  QueryContext::Details details;
+  if (request.certificate) context.details = &details;
+  collideMotion(motion, request, context, result);
+  impl_->finishAnswer(motion, request, details, result);
 }
 
 void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const CertifiedRequest& request,
-                                                const Aspects& aspects, CertifiedResult& result) const {
+                                                const QueryContext& context, CertifiedResult& result) const {
   const Registry& registry = impl_->registry;
   const Setup& setup = impl_->setup;
   const KinematicTree& robot = *registry.tree();
@@ -249,28 +251,28 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   };
   const Clock::time_point begin = request.measure_times ? Clock::now() : Clock::time_point();
   const WorkspaceLoan workspace;
-  setVariables(motion, setup.movingCoefficients(), aspects.time, workspace->coefficients, query);
+  setVariables(motion, setup.movingCoefficients(), context.time, workspace->coefficients, query);
   engine::Problem problem = setup.problem();
-  const BoundedParts parts(aspects.time, problem);
-  (aspects.own_margins ? setup.margins() : setup.marginsOfNeighbours()).putInto(query.margins);
+  const BoundedParts parts(context.time, problem);
+  (context.own_margins ? setup.margins() : setup.marginsOfNeighbours()).putInto(query.margins);
   restrictPairs(request, setup, problem, query.margins);
-  if (aspects.left_out && !aspects.left_out->empty()) leaveOut(*aspects.left_out, *workspace, problem);
+  if (context.left_out && !context.left_out->empty()) leaveOut(*context.left_out, *workspace, problem);
   TableAdvice advice{setup.tables(), setup.proven(), problem, motion, query.margins, *workspace};
   if (request.check_self && request.method == Method::standard) query.ask(advice.advisor());
-  if (aspects.may_ignore) {
-    query.may_ignore = aspects.may_ignore->data();
-    query.num_may_ignore = static_cast<std::int32_t>(aspects.may_ignore->size());
+  if (context.may_ignore) {
+    query.may_ignore = context.may_ignore->data();
+    query.num_may_ignore = static_cast<std::int32_t>(context.may_ignore->size());
   }
   query.check_self = problem.num_link_pairs > 0;
   Solved solved;
-  solve(registry, *impl_->stage2, aspects.stage2, request, problem, query, *workspace, solved);
+  solve(registry, *impl_->stage2, context.stage2, request, problem, query, *workspace, solved);
   const engine::Answer& answer = solved.answer;
   const Clock::time_point end = request.measure_times ? Clock::now() : Clock::time_point();
 
   static_cast<Bracket&>(result) = answer;
   result.contacts.clear();
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
-    result.contacts.push_back(report(registry, motion, aspects.time, answer.contacts[i]));
+    result.contacts.push_back(report(registry, motion, context.time, answer.contacts[i]));
   }
   keepFirstOfEachPair(result.certain, result.contacts);
   result.M_0_at_lower.clear();
@@ -282,15 +284,15 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
     result.ignored_initial_contacts.emplace_back(registry.body(answer.ignored[i].body_a).reference(),
                                                  registry.body(answer.ignored[i].body_b).reference());
   }
-  if (aspects.details) {
-    aspects.details->ignored.assign(answer.ignored, answer.ignored + answer.num_ignored);
-    aspects.details->contact.reset();
-    if (answer.num_contacts > 0 && answer.contacts[0].certain) aspects.details->contact = answer.contacts[0];
+  if (context.details) {
+    context.details->ignored.assign(answer.ignored, answer.ignored + answer.num_ignored);
+    context.details->contact.reset();
+    if (answer.num_contacts > 0 && answer.contacts[0].certain) context.details->contact = answer.contacts[0];
   }
-  if (aspects.never_apart) {
-    aspects.never_apart->clear();
+  if (context.never_apart) {
+    context.never_apart->clear();
     for (std::int32_t i = 0; i < answer.num_ignored; ++i) {
-      if (engine::neverApart(answer.ignored[i])) aspects.never_apart->push_back(answer.ignored[i].pair);
+      if (engine::neverApart(answer.ignored[i])) context.never_apart->push_back(answer.ignored[i].pair);
     }
   }
   result.statistics = workOf(solved);

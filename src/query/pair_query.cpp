@@ -24,7 +24,7 @@ using engine::PieceKind;
 /// The way from body 1 to body 2: up the one's motion, down the other's.
 /// @param[out] query  gets the variables, kept in the workspace.
 /// @param[out] pair  gets the placements.
-engine::SweepView pathBetween(const BodyMotion& motion1, const BodyMotion& motion2, Workspace& workspace,
+engine::SweepView pathBetween(const BodyMotion& motion1, const BodyMotion& motion2, QueryWorkspace& workspace,
                               engine::Query& query, engine::LinkPair& pair) {
   int degree = 1, variables = 0;
   std::size_t bounded = 0;
@@ -84,10 +84,10 @@ void setPoses(const BodyMotion& motion1, const BodyMotion& motion2, CertifiedPai
 void solveBounded(const MovingShape& body1, const MovingShape& body2, const CertifiedPairRequest& request,
                   CertifiedPairResult& result);
 
-/// Two half-spaces or planes. They meet, unless their normals are parallel and stay so: then the distance of the one's
-/// boundary from the other is that of any of its points, and a point takes its place. Normals that stay within rounding
-/// of parallel count as parallel: the promise is about the parallel ones next to them (doc/NUMERICS.md, "Unbounded
-/// pieces").
+/// Two half-spaces or planes. If their normals are parallel and stay so, the distance of one's boundary from the other
+/// is that of any point of this boundary, so a point takes its place. Else the two meet. Normals that stay within
+/// rounding of parallel count as parallel: the promise is about the parallel ones next to them (doc/NUMERICS.md,
+/// "Unbounded pieces").
 void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingShape& body2, const Piece& piece2,
                     const CertifiedPairRequest& request, CertifiedPairResult& result) {
   constexpr double kParallel = 64 * 0x1p-52;
@@ -119,9 +119,9 @@ void solveUnbounded(const MovingShape& body1, const Piece& piece1, const MovingS
   }
   result = CertifiedPairResult();
   result.certificate = none;
-  // They never separate where one holds the other all along, or where they are parallel at single instants at most, as
-  // along analytic motions that don't leave them parallel. A bounded motion may stop turning when they are, and then
-  // anything may follow: that is left open, as a contact that is not certain.
+  // They never separate if one holds the other all along. Nor do they if they are parallel at single instants at most,
+  // as along analytic motions that don't leave them parallel. A bounded motion may stop turning when they are parallel,
+  // and then anything may follow: the answer is left open, as a contact that is not certain.
   const bool never_apart = (alike && stay_parallel) || ((!parallel || alike) && heading1.analytic && heading2.analytic);
   result.ignored_initial_contact = request.ignore_initial_contact && never_apart;
   result.never_apart = result.ignored_initial_contact;

@@ -76,7 +76,7 @@ std::ostream& operator<<(std::ostream& out, const Bracket& bracket) {
 
 namespace {
 
-/// What a free answer does not speak of. @param ignored  number of pairs, those that never come apart included.
+/// Names what a free answer does not cover. @param ignored  number of pairs, those that never come apart included.
 std::string exceptionsText(const Bracket& answer, std::size_t unproven, std::size_t ignored, std::size_t never,
                            const std::vector<std::pair<std::string, std::string>>* neighbours = nullptr) {
   std::string text;

@@ -1,32 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How far a tool leaves its path: bisection of the time, for the distance and for the angle together.
+// Finds how far a tool leaves its path, by bisection of the time, for the distance and for the angle together.
 //
-// A path is the way of a pose over its part s in [0, 1]: the origin p(s) goes straight, or about an axis by the angle
-// phi, at the constant speed L; the axes turn with it, and by the shortest rotation w that is left at the end, seen
-// from there. k is the curvature, 0 or 1 / r. A pose of the tool has the part s of the nearest point of the path, its
-// distance d from p(s), and an angle from the axes there.
+// A path is the way of a pose over its part s in [0, 1]. The origin p(s) goes straight, or about an axis by the angle
+// phi, at the constant speed L. On an arc the axes turn with the origin. They also turn by w, the shortest rotation
+// that is then left at the end, seen from there. k is the curvature, 0 or 1 / r. A pose of the tool has three numbers:
+// the part s of the path's nearest point, its distance d from p(s), and the angle between its axes and the axes at
+// p(s).
 //
 // Between two times a and b of a piece, h = b - a, with D1, D2 and W the bounds of boundPath() on speed, acceleration
 // and angular speed:
-//   - The origin stays within D2 h^2 / 8 of the chord between its places at a and b, point by point. By the triangle
-//     inequality a point of that chord is no farther from the same point of the chord from p(s_a) to p(s_b) than d_a
-//     or d_b. The path between them is nowhere farther from that chord than its height, of an arc
-//     (1 - cos(phi (s_a - s_b) / 2)) / k <= L^2 k (s_a - s_b)^2 / 8. A distance changes by no more than D1 per unit of
-//     t, too.
-//   - Nearer to the path than its reach there is one nearest point. The reach of an arc is r, where the axis is. Of
-//     more than half a circle it is half of the distance between its ends, r sin(phi / 2): what is as far from one end
-//     as from the other, in the gap, is no nearer. The origin is at least r - d from the axis, so
-//     |s'| <= D1 / (L (1 - k d)). Elsewhere s may jump, by 1 at most. The wanted orientation turns by no more than
-//     (phi + |w|) |s'|, and the tool's by W; the angle between them changes by no more than both. From a and from b,
-//     it is at most the mean of both bounds; what s changes by is a concave function of time, so is bounded by its
-//     value at h / 2.
+//   - The origin stays within D2 h^2 / 8 of the chord between its places at a and b, point by point. A second chord
+//     goes from p(s_a) to p(s_b). By the triangle inequality, points at the same part of the two chords are at most
+//     max(d_a, d_b) apart. The path between p(s_a) and p(s_b) is nowhere farther from the second chord than the arc's
+//     height, (1 - cos(phi (s_a - s_b) / 2)) / k <= L^2 k (s_a - s_b)^2 / 8. Besides, a distance changes by at most D1
+//     per unit of t.
+//   - A point that is nearer to the path than the path's reach has one nearest point on it. The reach of an arc is r,
+//     the distance of its axis. If the arc is more than half a circle, its reach is r sin(phi / 2), half of the
+//     distance between its ends. A point in the gap that is as far from one end as from the other is at least that far
+//     from them. The origin is at least r - d from the axis, so
+//     |s'| <= D1 / (L (1 - k d)). Elsewhere s may jump, by 1 at most. The wanted orientation turns by at most (phi +
+//     |w|) |s'|, and the tool's by W. The angle between them changes by at most the sum. Bounded from a and from b, the
+//     angle is at most the mean of both bounds. The change of s is a concave function of time, so its value at h / 2
+//     bounds it.
 //
 // Rounding: a place is off by e = ulps 2^-52 terms, and a place of the path, and sums, by as much of theirs. A rotation
-// matrix is off by ulps 2^-52 (Frobenius). |A - B| = 2 sqrt(2) sin(angle / 2) of rotations A and B (Frobenius), so up
-// to sin(angle / 2) = 0.95 an angle is off by 2.3 times what A and B are off by together; beyond, it counts as pi. w is
-// rounded: where it leads is `end_gap` from the last orientation. Turns of less than 2.6 rad part on the way no more
-// than 1.4 times as far as at the end, so no orientation on the way is off by more than twice that.
+// matrix is off by ulps 2^-52 (Frobenius). Rotations A and B have |A - B| = 2 sqrt(2) sin(angle / 2) (Frobenius). So up
+// to sin(angle / 2) = 0.95 an angle is off by at most 2.3 times the sum of the errors of A and B. A larger angle counts
+// as pi. w is rounded: the orientation to which it leads is `end_gap` from the last one. Two turns of less than 2.6 rad
+// are on the way at most 1.4 times as far from each other as at the end. So no orientation on the way is off by more
+// than twice that.
 //
 // The path of the code begins where the computed origin does, and passes within eps of where the true tool begins and
 // ends, and of the via point. Let these three points go straight to the true ones, in a unit of time, and the path with
@@ -41,8 +44,8 @@
 // all sides over 2 r. So |c'| <= K eps and |n'| <= K eps / r, K = 8 r^2 Q. A point x at rho from the axis and z out of
 // the plane turns about the axis by (|x'| + |c'| + |z n'|) / rho. So phi changes by 2 (1 + K) eps / r, and s by
 //   ((1 + 2 K) eps / (r - d) + (1 + K) eps / r) / phi <= (2 + 3 K) eps / (L (1 - k d)).
-// Of a line s is (x - p_0) (p_1 - p_0) / L^2, and changes by (4 + 2 d / L) eps / L. Sides, r, L and d here are those at
-// the time. As eps is below a thousandth of all sides, and (1 + K) eps of r and L, and d below 0.9 of the reach, 5 %
+// On a line, s is (x - p_0) (p_1 - p_0) / L^2, and changes by (4 + 2 d / L) eps / L. Sides, r, L and d here are those
+// at the time. As eps is below a thousandth of all sides, and (1 + K) eps of r and L, and d below 0.9 of the reach, 5 %
 // are room enough for that.
 #include "fcl_artic/tool_line.h"
 
@@ -53,6 +56,7 @@
 #include <string>
 #include <vector>
 
+#include "kinematics/angles.h"
 #include "motion/link_motion.h"
 #include "numerics/arc_tangent.h"
 #include "numerics/constants.h"
@@ -65,11 +69,11 @@ using Eigen::Isometry3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.1415926535897932, kPiUpper = 3.1415926535897936;
+constexpr double kPiUpper = 3.1415926535897936;
 constexpr double kToolDefect = 1e-9;    ///< as of other poses that callers give
 constexpr double kShortest = 1e-6;      ///< of a path, and of a triangle of an arc's points, m
 constexpr double kFlattestArc = 1e3;    ///< radius over the longest side of that triangle
-constexpr double kSteep = 0.95;         ///< sine of half of the largest angle (2.5 rad) told from pi
+constexpr double kSteep = 0.95;         ///< sine of half of the largest angle (2.5 rad) that does not count as pi
 constexpr double kAngleFactor = 2.3;    ///< 2 / sqrt(1 - kSteep^2) / (2 sqrt(2)), rounded up
 constexpr double kSlack = 1 + 0x1p-40;  ///< for the rounding of sums and products of bounds
 constexpr double kFinest = 0x1p-40;     ///< intervals of time are not divided below this
@@ -86,7 +90,7 @@ double angleOf(double sine_of_half) {
 }
 
 /// One piece of the tool's motion.
-struct Way {
+struct ToolPiece {
   BodyMotion motion;
   PathBounds bounds;
   double begin, end;  ///< in the trajectory's time
@@ -133,17 +137,17 @@ Circle circleThrough(const Vector3d& p0, const Vector3d& via, const Vector3d& p1
       "(a radius above 1000 times their largest distance); without via the path is the straight line");
 }
 
-/// What the tool is to follow.
+/// The path that the tool has to follow.
 class ToolPath {
  public:
   /// @throws std::invalid_argument
-  ToolPath(const std::vector<Way>& ways, const std::optional<Vector3d>& via) {
+  ToolPath(const std::vector<ToolPiece>& ways, const std::optional<Vector3d>& via) {
     const BodyMotion& first = ways.front().motion;
     const Isometry3d begin = first.pose(0), end = ways.back().motion.pose(1);
     double ulps = 0, terms = 0;
-    for (const Way& way : ways) {
-      ulps = std::max(ulps, way.bounds.ulps);
-      terms = std::max(terms, way.bounds.terms);
+    for (const ToolPiece& piece : ways) {
+      ulps = std::max(ulps, piece.bounds.ulps);
+      terms = std::max(terms, piece.bounds.terms);
     }
     begin_ = begin.translation();
     const double direct = (end.translation() - begin_).norm();
@@ -183,14 +187,14 @@ class ToolPath {
   }
 
   double length() const { return length_; }
-  /// What a computed distance may be off by.
+  /// Bound on the error of a computed distance.
   double pad() const { return pad_; }
   /// Bound on the height of the arc over its chord between two parts of the path.
   double bowBetween(double a, double b) const { return length_ * length_ * curvature_ * (a - b) * (a - b) / 8 * kRoom; }
-  /// Bound on the rotation that is wanted while the origin goes by `way`, nowhere farther than that from the path.
-  double turnAlong(double way, double distance) const {
+  /// Bound on the rotation that is wanted while the origin goes by `gone`, nowhere farther than that from the path.
+  double turnAlong(double gone, double distance) const {
     if (!(distance < kNear * reach_)) return turned_;
-    return std::min(kRoom * way / (length_ * (1 - curvature_ * distance)), 1.0) * turned_;
+    return std::min(kRoom * gone / (length_ * (1 - curvature_ * distance)), 1.0) * turned_;
   }
 
   Sample sampleAt(const Isometry3d& M) const {
@@ -238,9 +242,9 @@ class ToolPath {
     turn.kind = MotionElement::Kind::turn;
     turn.before = before;
   }
-  /// The rotation that is left at the end.
+  /// Sets the rotation that is left at the end.
   /// @param ulps  of a pose of the tool.
-  /// @param swing  what the frame that goes along the path may be off by, rad.
+  /// @param swing  error of the frame that goes along the path, rad.
   void setTurn(const Isometry3d& end, double ulps, double swing) {
     const Matrix3d carried = wanted_.pose(1).linear();
     const double sine = sineOfHalf(carried, end.linear());
@@ -258,7 +262,7 @@ class ToolPath {
     angle_pad_ = (of_rotations + 2 * end_gap + swing + 0x1p-48) * kSlack;
   }
 
-  /// From the arc's begin about its axis, in [0, 2 pi).
+  /// The angle from the arc's begin to x about the arc's axis, in [0, 2 pi).
   double anglePast(const Vector3d& x) const {
     const Vector3d from = begin_ - center_, to = x - center_;
     return fullAngle(from.dot(to), axis_.dot(from.cross(to)));
@@ -285,12 +289,13 @@ class ToolPath {
 
 /// Part of a piece.
 struct Stretch {
-  const Way* way;
+  const ToolPiece* piece;
   double begin, end;
   Sample at_begin, at_end;
 };
 
-/// The largest value over all time, of what samples and stretches of time bound: one of those that a search is for.
+/// Brackets the largest value over all time: samples give lower bounds, stretches of time upper ones. A search has one
+/// of these for the distance and one for the angle.
 class Largest {
  public:
   double lower = 0, upper = 0, time = 0;
@@ -304,16 +309,16 @@ class Largest {
     lower = value;
     time = t;
   }
-  /// No sample tells more.
+  /// Says that no sample can raise the lower bound.
   void giveUp() { blind_ = true; }
   /// @param bound  over stretch number `stretch`.
-  /// @param of_time  what of it narrower stretches lessen: the rest is rounding.
+  /// @param of_time  the part of the bound that narrower stretches lessen: the rest is rounding.
   void add(double bound, double of_time, std::size_t stretch, double end) {
     open_.push({bound, of_time, stretch, end});
   }
   void update(const std::vector<Stretch>& stretches) {
     while (stretches[open_.top().stretch].end != open_.top().end) open_.pop();  // divided
-    const Open& top = open_.top();
+    const StretchBound& top = open_.top();
     upper = top.bound;
     const double gap = upper - lower;
     narrow = gap <= tolerance_;
@@ -323,13 +328,13 @@ class Largest {
   std::size_t widest() const { return open_.top().stretch; }
 
  private:
-  struct Open {
+  struct StretchBound {
     double bound, of_time;
     std::size_t stretch;
     double end;
-    bool operator<(const Open& other) const { return bound < other.bound; }
+    bool operator<(const StretchBound& other) const { return bound < other.bound; }
   };
-  std::priority_queue<Open> open_;
+  std::priority_queue<StretchBound> open_;
   const double tolerance_;
   bool seen_ = false, blind_ = false;
 };
@@ -338,10 +343,10 @@ class ToolSearch {
  public:
   Largest distance, angle;
 
-  ToolSearch(const std::vector<Way>& ways, const ToolPath& path, const ToolLineRequest& request)
+  ToolSearch(const std::vector<ToolPiece>& ways, const ToolPath& path, const ToolLineRequest& request)
       : distance(request.tolerance_distance), angle(request.tolerance_angle), path_(path) {
-    for (const Way& way : ways) {
-      stretches_.push_back({&way, 0, 1, look(way, 0), look(way, 1)});
+    for (const ToolPiece& piece : ways) {
+      stretches_.push_back({&piece, 0, 1, sampleAt(piece, 0), sampleAt(piece, 1)});
       bound(stretches_.size() - 1);
     }
     bool last_distance = false;
@@ -356,29 +361,29 @@ class ToolSearch {
   }
 
  private:
-  Sample look(const Way& way, double t) {
-    const Sample sample = path_.sampleAt(way.motion.pose(t));
+  Sample sampleAt(const ToolPiece& piece, double t) {
+    const Sample sample = path_.sampleAt(piece.motion.pose(t));
     ++looked_;
-    distance.see(std::max(sample.distance - path_.pad(), 0.0), way.time(t));
-    angle.see(sample.angle_lower, way.time(t));
+    distance.see(std::max(sample.distance - path_.pad(), 0.0), piece.time(t));
+    angle.see(sample.angle_lower, piece.time(t));
     if (sample.blind) angle.giveUp();
     return sample;
   }
   void bound(std::size_t number) {
-    const auto& [way, begin, end, a, b] = stretches_[number];
-    const double h = end - begin, gone = way->bounds.speed * h, most = std::max(a.distance, b.distance);
-    const double by_chord = most + way->bounds.acceleration * h * h / 8 + path_.bowBetween(a.part, b.part);
+    const auto& [piece, begin, end, a, b] = stretches_[number];
+    const double h = end - begin, gone = piece->bounds.speed * h, most = std::max(a.distance, b.distance);
+    const double by_chord = most + piece->bounds.acceleration * h * h / 8 + path_.bowBetween(a.part, b.part);
     const double by_speed = 0.5 * (a.distance + b.distance + gone);
     const double distance_bound = (std::min(by_chord, by_speed) + path_.pad()) * kSlack;
     distance.add(distance_bound, distance_bound - (most + path_.pad()), number, end);
-    const double turned = 0.5 * way->bounds.angular_speed * h + path_.turnAlong(0.5 * gone, distance_bound);
+    const double turned = 0.5 * piece->bounds.angular_speed * h + path_.turnAlong(0.5 * gone, distance_bound);
     const double angle_bound = std::min((0.5 * (a.angle_upper + b.angle_upper) + turned) * kSlack, kPiUpper);
     angle.add(angle_bound, angle_bound - std::max(a.angle_upper, b.angle_upper), number, end);
   }
   void divide(std::size_t number) {
     Stretch left = stretches_[number], right = left;
     left.end = right.begin = 0.5 * (left.begin + left.end);
-    left.at_end = right.at_begin = look(*left.way, left.end);
+    left.at_end = right.at_begin = sampleAt(*left.piece, left.end);
     stretches_[number] = left;
     stretches_.push_back(right);
     bound(number);
@@ -401,8 +406,8 @@ LinkId requireLink(const KinematicTree& tree, const LinkRef& link) {
   throw std::out_of_range("toolDeviation: robot '" + tree.name() + "' has no link " + std::to_string(link.id()));
 }
 
-ToolDeviation find(std::vector<Way> ways, const ToolLineRequest& request) {
-  for (Way& way : ways) way.bounds = boundPath(way.motion, way.motion.after.length());
+ToolDeviation find(std::vector<ToolPiece> ways, const ToolLineRequest& request) {
+  for (ToolPiece& piece : ways) piece.bounds = boundPath(piece.motion, piece.motion.after.length());
   const ToolPath path(ways, request.via);
   const ToolSearch found(ways, path, request);
   ToolDeviation out;
@@ -417,7 +422,7 @@ ToolDeviation find(std::vector<Way> ways, const ToolLineRequest& request) {
   return out;
 }
 
-/// Adds motions of the tool, one after the other.
+/// Makes the tool's motions, one after the other.
 class WayMaker {
  public:
   WayMaker(const KinematicTree& tree, const LinkRef& link, const ToolLineRequest& request)
@@ -434,7 +439,7 @@ class WayMaker {
     motion.requirePolynomial("toolDeviation()");
     ways.push_back({linkMotion(tree_, motion, link_, tool_), {}, begin, end});
   }
-  std::vector<Way> ways;
+  std::vector<ToolPiece> ways;
 
  private:
   const KinematicTree& tree_;

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A trajectory is asked piece by piece. What has to be carried over:
+// A trajectory is asked piece by piece. Three things are carried over:
 //
-// Time. Piece k stands for T = [T_k, T_k+1] at s = (t - T_k) / h, h = T_k+1 - T_k. Of T_k + s h each of the three steps
+// Time. Piece k stands for T = [T_k, T_k+1] at s = (t - T_k) / h, h = T_k+1 - T_k. Each of the three steps of T_k + s h
 // is rounded outward, in whatever mode, but not out of the piece: t_lower stays a proof, however large |T| is. A step
 // moves by no more than 2 ulp, so an end by no more than 2 ulp of the larger |T| and 4 of h.
 //
 // Obstacles that move. Their motions' [0, 1] is the trajectory's time; piece k gets the part [s_k, s_k+1] of it, with
 // s_k = (T_k - T_0) / (T_n - T_0) as rounded: the same number ends one piece and begins the next.
 //
-// Initial contacts that may separate. Pairs that touch at the very beginning are ignored; those that did not separate
-// within a piece (by the measure of one query: free over 1/512 of the piece) may be ignored at the beginning of the
-// next one too (Query::may_ignore), all others are watched. A pair that has separated is never ignored again.
+// Initial contacts that may separate. Pairs that touch at the very beginning are ignored. A pair has separated within a
+// piece if it was free over 1/512 of the piece, the measure of one query. A pair that has not may be ignored at the
+// beginning of the next piece too (Query::may_ignore); all others are watched. A pair that has separated is never
+// ignored again.
 
 #include <algorithm>
 #include <cstdint>
@@ -22,16 +23,16 @@
 #include "fcl_artic/trajectory.h"
 #include "model/bracket.h"
 #include "model/trajectory_time.h"
-#include "query/aspects.h"
 #include "query/claim_nothing.h"
 #include "query/engine_query.h"
 #include "query/manager_impl.h"
+#include "query/query_context.h"
 
 namespace fcl_artic {
 namespace {
 
-/// A piece's answer in the trajectory's time: what is free is free to the end, as far as is known; a contact that is
-/// not proven may be as late as that.
+/// A piece's answer in the trajectory's time. If the piece is free, the bracket ends at the trajectory's end. If its
+/// contact is not proven, the contact may begin as late as that.
 Bracket inTrajectoryTime(const Bracket& part, const PieceTime& clock, double end) {
   if (part.isFree()) return {Status::free, end, end, false};
   const double proven_by = engine::provenBy(part);
@@ -51,7 +52,7 @@ void ArticulatedCollisionManager::continuousCollide(const JointTrajectory& traje
                                                     CertifiedResult& result) const {
   const bool none = trajectory.numPieces() == 0;  // moved from, refused below
   const double begin = none ? 0 : trajectory.beginTime(), end = none ? 1 : trajectory.endTime();
-  answerOrClaimNothing(result, begin, end, [&] { collideTrajectory(trajectory, request, Aspects(), result); });
+  answerOrClaimNothing(result, begin, end, [&] { collideTrajectory(trajectory, request, QueryContext(), result); });
 }
 
 CertifiedResult ArticulatedCollisionManager::continuousCollide(const JointTrajectory& trajectory,
@@ -62,7 +63,7 @@ CertifiedResult ArticulatedCollisionManager::continuousCollide(const JointTrajec
 }
 
 void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& trajectory, const CertifiedRequest& request,
-                                                    const Aspects& common, CertifiedResult& result) const {
+                                                    const QueryContext& common, CertifiedResult& result) const {
   (void)makeQuery(request);  // refuses in the caller's own numbers
   trajectory.requireOf(tree());
   const bool every_pair = request.mode == ContactMode::firstOfEveryPair;
@@ -77,11 +78,12 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     CertifiedRequest own = request;
     own.tolerance_time = std::min(1.0, std::max(request.tolerance_time / clock.duration(), 0x1p-1000));
     own.ignore_initial_contact = k == 0 ? request.ignore_initial_contact : !in_contact.empty();
-    // With every pair asked for, pieces after the first contact are searched too: they prove nothing more of it all.
+    // If every pair is asked for, pieces after the first contact are searched too: they do not raise the time until
+    // which all is proven free.
     const auto provenUntil = [&](double t) { return contact_found ? sum.t_lower : t; };
     if (request.progress) own.progress = [&](double s) { return request.progress(provenUntil(clock.lower(s))); };
     const std::uint64_t used = countedWork(sum.statistics);
-    // A piece may be free without a single test: between pieces, too, the budget is looked at and the caller is asked.
+    // A piece may be free without a single test. So the budget is checked and the caller is asked between pieces, too.
     const bool spent = request.work_budget && used >= request.work_budget;
     if (spent || (k > 0 && request.progress && !request.progress(provenUntil(clock.begin())))) {
       sum.status = Status::undecided;
@@ -93,15 +95,15 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     }
     if (request.work_budget) own.work_budget = request.work_budget - used;
     std::vector<engine::PairId> still_in_contact;
-    Aspects aspects = common;
-    aspects.time = partOfTime(trajectory, k);
-    aspects.may_ignore = k == 0 ? nullptr : &in_contact;
-    aspects.never_apart = &still_in_contact;
-    Aspects::Details details;
-    if (request.certificate) aspects.details = &details;
-    collideMotion(trajectory.piece(k), own, aspects, part);
+    QueryContext context = common;
+    context.time = partOfTime(trajectory, k);
+    context.may_ignore = k == 0 ? nullptr : &in_contact;
+    context.never_apart = &still_in_contact;
+    QueryContext::Details details;
+    if (request.certificate) context.details = &details;
+    collideMotion(trajectory.piece(k), own, context, part);
     if (request.certificate && !contact_found) {
-      impl_->add(trajectory.piece(k), aspects.time, own, part, details, claim);
+      impl_->appendClaim(trajectory.piece(k), context.time, own, part, details, claim);
     }
     add(sum.statistics, part.statistics);
     sum.never_apart_pairs = part.never_apart_pairs;  // so far
@@ -124,7 +126,7 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     }
   }
   if (sum.contacts.size() > request.max_contacts) sum.contacts.resize(request.max_contacts);
-  // A pair counts once, whichever of the pieces leaves its proof.
+  // A pair counts once, whichever piece leaves the range of its proof.
   std::vector<const JointMotion*> pieces;
   for (std::size_t k = 0; k < trajectory.numPieces(); ++k) pieces.push_back(&trajectory.piece(k));
   impl_->countUnchecked(pieces.data(), pieces.size(), request, common.own_margins, sum);

@@ -12,7 +12,7 @@ namespace FCL_ARTIC_ISA {
 namespace {
 
 constexpr int kWidth = Intervals::kLanes;
-constexpr int kFewest = kWidth > 4 ? 4 : kWidth > 2 ? 3 : kWidth;  // bench_interval, doc/REDON2004.md
+constexpr int kFewest = kWidth > 4 ? 4 : kWidth > 2 ? 3 : kWidth;  // fewer: one by one is faster
 
 /// The same matrix in every lane, times a number each.
 struct Transform {
@@ -56,8 +56,8 @@ FCL_ARTIC_INLINE Ends sumOfProducts(Ends a, Ends x, Ends b, Ends y) {
   return addUp(mulUp(a, x), mulUp(b, y));
 }
 
-/// redon/overlap.h, line by line; the next axes are looked at while any pair may touch. What is not finite is above
-/// nothing: such a pair may touch.
+/// redon/overlap.h, line by line; the next axes are looked at while any pair may touch. A value that is not finite is
+/// above nothing: such a pair may touch.
 FCL_ARTIC_INLINE unsigned apart(const Transform& M, const ObbNode* const* first, const ObbNode* const* second, int n) {
   const unsigned all = (1u << n) - 1;
   const Boxes A(first, n), B(second, n);

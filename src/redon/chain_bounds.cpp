@@ -27,7 +27,7 @@ using interval_chain::StepBounds;
 
 namespace {
 
-/// Turns over an interval, summed over a chain in rad, from which on interval products cut something off the Taylor
+/// Sum of a chain's turns over an interval, in rad. From this sum on, interval products cut something off the Taylor
 /// enclosure, whose remainder grows with the third power (doc/REDON2004.md, "Enclosures").
 constexpr double kSmallTurn = 3;
 
@@ -70,8 +70,8 @@ struct Variable {
   Interval q, q1, q2;
 };
 
-/// A polynomial over T, from its Taylor coefficients at the middle of T: what powers of T - tm lose by the dependency
-/// between them shrinks with the square of T.
+/// A polynomial over T, from its Taylor coefficients at the middle of T. Powers of T - tm depend on each other, and the
+/// width that this costs shrinks with the square of T.
 Variable evaluatePolynomial(const Interval* coefficients, int degree, Interval T) {
   if (degree == 1) return {coefficients[0] + coefficients[1] * T, coefficients[1], Interval(0.0)};
   const double middle = T.middle();
@@ -150,8 +150,8 @@ IntervalVec3 vectorWithin(const double* x, double part) {
   return o;
 }
 
-/// What the author of a motion states, over T: its state at the middle and how far bounds let that go; or the inverse
-/// (R^T, -R^T c), whose derivatives doc/NUMERICS.md and motion/factors.h give.
+/// The factor that a motion's author states, over T: its state at the middle, and how far the bounds let that go. Or
+/// the inverse (R^T, -R^T c), whose derivatives doc/NUMERICS.md and motion/factors.h give.
 void boundedFactor(const SweepStep& step, Interval T, Factor& f) {
   const double middle = T.middle();
   double x[24], bound[6];
@@ -212,6 +212,56 @@ struct StepMotion {
   IntervalVec3 axis;
   Interval length;
 };
+
+/// X times a turn about z.
+void turnAboutZ(const IntervalMat3& X, Interval angle, IntervalMat3& R) {
+  Interval sine, cosine;
+  encloseSineCosine(angle, sine, cosine);
+  for (int k = 0; k < 3; ++k) {
+    R(k, 0) = X(k, 0) * cosine + X(k, 1) * sine;
+    R(k, 1) = X(k, 1) * cosine - X(k, 0) * sine;
+    R(k, 2) = X(k, 2);
+  }
+}
+
+/// The factor of a turn by a rotation vector.
+void turnFactor(const StepMotion& s, Interval T, Factor& factor) {
+  Variable q[3];
+  for (int k = 0; k < 3; ++k) q[k] = evaluatePolynomial(s.q[k], s.degree, T);
+  if (s.power < 0) return turnByVector(q, factor);
+  Interval power(1.0);
+  for (int k = 0; k < s.power; ++k) power *= T;
+  factor.J = turnAbout(s.axis, s.length * power);
+  factor.W = {q[0].q1, q[1].q1, q[2].q1};
+  factor.W1 = {q[0].q2, q[1].q2, q[2].q2};
+}
+
+/// X times such a factor, with the orientation before it or after it.
+/// @param[in,out] X  with the orientation, if that comes before the factor.
+void turn(const SweepStep& step, const double* orientations, const IntervalMat3& J, IntervalMat3& X, IntervalMat3& R) {
+  IntervalMat3 R0;
+  if (step.orientation >= 0) {
+    R0 = IntervalMat3(orientations + 9 * step.orientation);
+    addError(R0, ulps(Rotation::kUlps));
+    if (step.inverse) X = X * transpose(R0);
+    cutToUnit(X);
+  }
+  R = X * J;
+  if (step.orientation >= 0 && !step.inverse) {
+    cutToUnit(R);
+    R = R * R0;
+  }
+}
+
+/// The factor of a translation.
+void slideFactor(const StepMotion& s, Interval T, Factor& factor) {
+  for (int k = 0; k < 3; ++k) {
+    const Variable q = evaluatePolynomial(s.q[k], s.degree, T);
+    factor.l[k] = q.q;
+    factor.l1[k] = q.q1;
+    factor.l2[k] = q.q2;
+  }
+}
 
 /// Pose of a step's frame, angular velocity and acceleration, the origin's velocity and acceleration.
 struct Frame {
@@ -304,13 +354,7 @@ void ChainBounds::Impl::evaluate(Interval T, Derivatives derivatives, std::vecto
       case StepKind::revolute: {
         slides = false;
         const Variable q = s.only(T);
-        Interval sine, cosine;
-        encloseSineCosine(q.q, sine, cosine);
-        for (int k = 0; k < 3; ++k) {
-          f.R(k, 0) = X(k, 0) * cosine + X(k, 1) * sine;
-          f.R(k, 1) = X(k, 1) * cosine - X(k, 0) * sine;
-          f.R(k, 2) = X(k, 2);
-        }
+        turnAboutZ(X, q.q, f.R);
         factor.W = {Interval(0.0), Interval(0.0), q.q1};
         factor.W1 = {Interval(0.0), Interval(0.0), q.q2};
         break;
@@ -325,39 +369,13 @@ void ChainBounds::Impl::evaluate(Interval T, Derivatives derivatives, std::vecto
       }
       case StepKind::slide: {
         turns = false;
-        for (int k = 0; k < 3; ++k) {
-          const Variable q = evaluatePolynomial(s.q[k], s.degree, T);
-          factor.l[k] = q.q;
-          factor.l1[k] = q.q1;
-          factor.l2[k] = q.q2;
-        }
+        slideFactor(s, T, factor);
         break;
       }
       case StepKind::turn: {
         slides = false;
-        Variable q[3];
-        for (int k = 0; k < 3; ++k) q[k] = evaluatePolynomial(s.q[k], s.degree, T);
-        if (s.power >= 0) {
-          Interval power(1.0);
-          for (int k = 0; k < s.power; ++k) power *= T;
-          factor.J = turnAbout(s.axis, s.length * power);
-          factor.W = {q[0].q1, q[1].q1, q[2].q1};
-          factor.W1 = {q[0].q2, q[1].q2, q[2].q2};
-        } else {
-          turnByVector(q, factor);
-        }
-        IntervalMat3 R0;
-        if (step.orientation >= 0) {
-          R0 = IntervalMat3(query.orientations + 9 * step.orientation);
-          addError(R0, ulps(Rotation::kUlps));
-          if (step.inverse) X = X * transpose(R0);
-          cutToUnit(X);
-        }
-        f.R = X * factor.J;
-        if (step.orientation >= 0 && !step.inverse) {
-          cutToUnit(f.R);
-          f.R = f.R * R0;
-        }
+        turnFactor(s, T, factor);
+        turn(step, query.orientations, factor.J, X, f.R);
         break;
       }
       case StepKind::bounded:
@@ -374,7 +392,7 @@ void ChainBounds::Impl::evaluate(Interval T, Derivatives derivatives, std::vecto
     f.o = g ? g->o + r : r;
     if (!moving) continue;
 
-    // Without a frame before it nothing carries this one.
+    // If there is no frame before this one, nothing carries it.
     f.w = g ? g->w : zero();
     f.v = g ? g->v + cross(g->w, r) : zero();
     if (twice) {
@@ -394,7 +412,7 @@ void ChainBounds::Impl::evaluate(Interval T, Derivatives derivatives, std::vecto
   }
 }
 
-/// What a frame's motion means for its pose and the derivatives of that.
+/// Writes the pose of a moving frame, and as many of the pose's derivatives as are asked for.
 void write(const Frame& f, Derivatives derivatives, FrameBounds& out) {
   out.pose = {f.R, f.o};
   if (derivatives == Derivatives::none) return;

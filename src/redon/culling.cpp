@@ -15,7 +15,8 @@ namespace {
 /// (doc/REDON2004.md).
 constexpr double kMotionPerSize = 0.125;
 constexpr int kCached = 2048;
-/// Between the whole motion and a link's own level: what meets no obstacle in an eighth is not divided further there.
+/// A level between the whole motion and a link's own. If a link meets no obstacle in an eighth of the motion, that
+/// eighth is not divided further.
 constexpr int kCoarse = 3;
 
 using engine::Body;
@@ -37,7 +38,7 @@ void Culling::begin(const engine::Problem& problem, const engine::Query& query, 
   std::fill(std::begin(chains_set_), std::end(chains_set_), 0);
   movers_.resize(static_cast<std::size_t>(problem_->num_movers));
   for (std::size_t m = 0; m < movers_.size(); ++m) {
-    Mover& mover = movers_[m];
+    LssBoxes& mover = movers_[m];
     std::fill(std::begin(mover.made), std::end(mover.made), 0);
     const Body& body = problem_->bodies[problem_->movers[m]];
     mover.level = 0;
@@ -87,7 +88,7 @@ int Culling::levelOf(int sweep, int step, const double* center, double radius) {
 
 /// Box in the world that holds a mover's line swept sphere over part k of 2^level.
 const Culling::Box& Culling::boxOf(std::int32_t number, int level, int k) {
-  Mover& mover = movers_[static_cast<std::size_t>(number)];
+  LssBoxes& mover = movers_[static_cast<std::size_t>(number)];
   const Body& body = problem_->bodies[problem_->movers[number]];
   if (body.step < 0) level = k = 0;
   mover.boxes[level].resize(std::size_t{1} << level);
@@ -108,7 +109,8 @@ const Culling::Box& Culling::boxOf(std::int32_t number, int level, int k) {
   return box;
 }
 
-/// Of the parts of these 2^level, divided into 2^finer: those in which the mover's box meets this one.
+/// Divides the parts of `mask`, of 2^level, into parts of 2^finer. @return the parts in which the mover's box meets
+/// this one.
 std::uint64_t Culling::divide(std::int32_t mover, int level, std::uint64_t mask, int finer, const double* lo,
                               const double* hi) {
   std::uint64_t out = 0;
@@ -118,7 +120,7 @@ std::uint64_t Culling::divide(std::int32_t mover, int level, std::uint64_t mask,
   return out;
 }
 
-/// Of 2^level parts, no fewer than either mover's own level asks for: those in which their boxes meet.
+/// The parts in which two movers' boxes meet, of 2^level parts: `level` is no lower than either mover's own.
 std::uint64_t Culling::meetingParts(std::int32_t a, std::int32_t b, int level) {
   const int own_a = movers_[static_cast<std::size_t>(a)].level, own_b = movers_[static_cast<std::size_t>(b)].level;
   std::uint64_t mask = 1;
@@ -206,12 +208,12 @@ bool Culling::inWorld(const BodyPair& pair) const {
 
 void Culling::start(const std::vector<BodyPair>& pairs) {
   stamp_pair_ = -1;  // boxes of an earlier list of pairs are others
-  for (std::vector<Entry>& entries : waiting_) entries.clear();
-  traversals_.resize(pairs.size());
+  for (std::vector<NodePair>& entries : waiting_) entries.clear();
+  relative_poses_.resize(pairs.size());
   finest_ = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const BodyPair& pair = pairs[i];
-    Traversal& t = traversals_[i];
+    RelativePoses& t = relative_poses_[i];
     t.made = 0;
     if (inWorld(pair)) {
       const auto own = [&](std::int32_t body) {
@@ -237,12 +239,12 @@ void Culling::start(const std::vector<BodyPair>& pairs) {
   }
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const bool free = pairs[i].free_nodes && pairs[i].free_nodes[0] & 1;
-    if (traversals_[i].mask && !free) wait({static_cast<std::int32_t>(i), 0, 0, traversals_[i].mask});
+    if (relative_poses_[i].mask && !free) wait({static_cast<std::int32_t>(i), 0, 0, relative_poses_[i].mask});
   }
 }
 
 /// B's tree frame in A's over sub-interval k of the pair.
-const IntervalTransform& Culling::relativeOver(const BodyPair& pair, Traversal& t, int k) {
+const IntervalTransform& Culling::relativeOver(const BodyPair& pair, RelativePoses& t, int k) {
   IntervalTransform& relative = t.relative[static_cast<std::size_t>(k)];
   if (t.made >> k & 1) return relative;
   t.made |= 1ull << k;
@@ -260,29 +262,30 @@ const IntervalTransform& Culling::relativeOver(const BodyPair& pair, Traversal& 
 }
 
 /// Puts a pair of boxes where its first sub-interval begins.
-void Culling::wait(const Entry& e) {
-  const int level = traversals_[static_cast<std::size_t>(e.pair)].level;
+void Culling::wait(const NodePair& e) {
+  const int level = relative_poses_[static_cast<std::size_t>(e.pair)].level;
   waiting_[__builtin_ctzll(e.mask) << (finest_ - level)].push_back(e);
 }
 
-const SweptObb& Culling::swept(const BodyPair& pair, const Entry& e, int k) {
+const SweptObb& Culling::swept(const BodyPair& pair, const NodePair& e, int k) {
   if (e.pair != stamp_pair_ || k != stamp_part_) {
     stamp_pair_ = e.pair;
     stamp_part_ = k;
     ++stamp_;
   }
-  Swept& s = cache_[static_cast<std::size_t>(e.b & (kCached - 1))];
+  CachedBox& s = cache_[static_cast<std::size_t>(e.b & (kCached - 1))];
   if (s.node != e.b || s.stamp != stamp_) {
     s.node = e.b;
     s.stamp = stamp_;
-    sweep(relativeOver(pair, traversals_[static_cast<std::size_t>(e.pair)], k),
+    sweep(relativeOver(pair, relative_poses_[static_cast<std::size_t>(e.pair)], k),
           pair.b->nodes()[static_cast<std::size_t>(e.b)], s.box);
   }
   return s.box;
 }
 
-/// A bit for each pair of boxes that is apart in the pair's sub-interval: in lanes where there are enough of them.
-unsigned Culling::apart(const BodyPair& pair, const Entry* entries, int n, int part) {
+/// A bit for each pair of boxes that is apart in the pair's sub-interval. If there are enough of them, they are tested
+/// in lanes.
+unsigned Culling::apart(const BodyPair& pair, const NodePair* entries, int n, int part) {
   const ObbNode *a[BoxBatch::kPairs], *b[BoxBatch::kPairs];
   for (int i = 0; i < n; ++i) {
     a[i] = &pair.a->nodes()[static_cast<std::size_t>(entries[i].a)];
@@ -290,7 +293,7 @@ unsigned Culling::apart(const BodyPair& pair, const Entry* entries, int n, int p
   }
   const BoxBatch& lanes = boxBatch();
   if (n >= lanes.fewest) {
-    return lanes.apart(relativeOver(pair, traversals_[static_cast<std::size_t>(entries[0].pair)], part), a, b, n);
+    return lanes.apart(relativeOver(pair, relative_poses_[static_cast<std::size_t>(entries[0].pair)], part), a, b, n);
   }
   unsigned out = 0;
   for (int i = 0; i < n; ++i) {
@@ -299,12 +302,12 @@ unsigned Culling::apart(const BodyPair& pair, const Entry* entries, int n, int p
   return out;
 }
 
-/// Both trees down at once, the larger box first. What is apart in a sub-interval is so for all boxes below: these wait
-/// for the next one.
+/// Both trees down at once, the larger box first. Boxes that are apart in a sub-interval hold only boxes that are apart
+/// in it: these wait for the next sub-interval.
 bool Culling::leafPairs(const std::vector<BodyPair>& pairs, int slot, std::vector<LeafPair>& out) {
-  std::vector<Entry>& stack = waiting_[slot];
+  std::vector<NodePair>& stack = waiting_[slot];
   while (!stack.empty()) {
-    Entry batch[BoxBatch::kPairs];
+    NodePair batch[BoxBatch::kPairs];
     const std::int32_t number = stack.back().pair;
     const int k = __builtin_ctzll(stack.back().mask);
     int n = 0;
@@ -314,11 +317,11 @@ bool Culling::leafPairs(const std::vector<BodyPair>& pairs, int slot, std::vecto
       stack.pop_back();
     }
     const BodyPair& pair = pairs[static_cast<std::size_t>(number)];
-    const int level = traversals_[static_cast<std::size_t>(number)].level;
+    const int level = relative_poses_[static_cast<std::size_t>(number)].level;
     const unsigned apart = this->apart(pair, batch, n, k);
     counts_->box_tests += static_cast<std::uint64_t>(n);
     for (int i = 0; i < n; ++i) {
-      Entry& e = batch[i];
+      NodePair& e = batch[i];
       if (apart >> i & 1) {
         e.mask &= e.mask - 1;
         if (e.mask) wait(e);

@@ -67,24 +67,24 @@ class Culling {
     }
   };
   /// Boxes in the world that hold a body's line swept sphere over the parts of [0, 1], of each level by itself.
-  struct Mover {
+  struct LssBoxes {
     int level = 0;  ///< the paper's r_i
     std::uint64_t made[kFinest + 1] = {};
     std::vector<Box> boxes[kFinest + 1];
   };
   /// B in A over the sub-intervals of a pair.
-  struct Traversal {
+  struct RelativePoses {
     std::uint64_t mask;
     int level;
     std::uint64_t made;  ///< sub-intervals whose bounds are there
     std::vector<IntervalTransform> relative;
   };
-  struct Swept {
+  struct CachedBox {
     std::int32_t node = -1;
     std::int64_t stamp = -1;
     SweptObb box;
   };
-  struct Entry {
+  struct NodePair {
     std::int32_t pair, a, b;
     std::uint64_t mask;  ///< of the pair's sub-intervals in which the boxes may meet
   };
@@ -97,10 +97,10 @@ class Culling {
                        const double* hi);
   std::uint64_t meetingParts(std::int32_t mover_a, std::int32_t mover_b, int level);
   bool inWorld(const BodyPair& pair) const;
-  const IntervalTransform& relativeOver(const BodyPair& pair, Traversal& traversal, int k);
-  void wait(const Entry& e);
-  const SweptObb& swept(const BodyPair& pair, const Entry& e, int k);
-  unsigned apart(const BodyPair& pair, const Entry* entries, int n, int part);
+  const IntervalTransform& relativeOver(const BodyPair& pair, RelativePoses& traversal, int k);
+  void wait(const NodePair& e);
+  const SweptObb& swept(const BodyPair& pair, const NodePair& e, int k);
+  unsigned apart(const BodyPair& pair, const NodePair* entries, int n, int part);
 
   const engine::Problem* problem_ = nullptr;
   const engine::Query* query_ = nullptr;
@@ -109,11 +109,11 @@ class Culling {
   std::vector<SweepChains> chains_[kFinest + 1];  ///< by level and sub-interval
   std::uint64_t chains_set_[kFinest + 1] = {};
   std::vector<std::vector<int>> levels_;  ///< by sweep and step; -1: not known yet
-  std::vector<Mover> movers_;
-  std::vector<Traversal> traversals_;  ///< of the body pairs
+  std::vector<LssBoxes> movers_;
+  std::vector<RelativePoses> relative_poses_;  ///< of the body pairs
   int finest_ = 0;
-  std::vector<Entry> waiting_[1 << kFinest];  ///< by slot
-  std::vector<Swept> cache_;
+  std::vector<NodePair> waiting_[1 << kFinest];  ///< by slot
+  std::vector<CachedBox> cache_;
   std::int64_t stamp_ = 0;  ///< of the present pair and sub-interval
   std::int32_t stamp_pair_ = -1, stamp_part_ = -1;
 };

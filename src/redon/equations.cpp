@@ -25,14 +25,14 @@ void removeAlong(const Vector3d& u, Vector3d& v) {
   if (length2 > 0) v -= v.dot(u) / length2 * u;
 }
 
-/// Closest points of two features, and the features' own directions there. They are only where to look: what is found
-/// is checked in interval arithmetic.
+/// Closest points of two features, and the features' own directions there. They only say where to look: every claim is
+/// checked in interval arithmetic.
 struct Nearest {
   Vector3d a, x, e = Vector3d::Zero(), f = Vector3d::Zero();
 
   double distance() const { return (x - a).norm(); }
-  /// From A to B. The difference of near points has lost digits; that it is at right angles to the features brings them
-  /// back.
+  /// From A to B. The difference of near points has lost digits. It is at right angles to the features, and this
+  /// restores them.
   Vector3d direction() const {
     Vector3d n = x - a, g = f;
     removeAlong(e, n);
@@ -42,7 +42,7 @@ struct Nearest {
   }
 };
 
-/// Of a point and an edge. @param[out] along  whether the foot lies between the ends.
+/// The foot of a point on an edge. @param[out] along  whether the foot lies between the ends.
 Vector3d footOnEdge(const Vector3d& p, const Vector3d& from, const Vector3d& to, bool& along) {
   const Vector3d e = to - from;
   const double length2 = e.squaredNorm(), s = length2 > 0 ? e.dot(p - from) / length2 : 0;
@@ -132,6 +132,20 @@ bool inside(const IntervalVec3& normal, const IntervalVec3* face, const Interval
   return true;
 }
 
+enum Feature { vertex, edge, face };
+
+/// The vector of a feature in its body's frame: a vertex's place, along an edge, or a face's normal.
+IntervalVec3 vectorOf(const ObbTree& tree, Feature kind, int number) {
+  if (kind == vertex) return at(tree.vertex(number));
+  if (kind == edge) {
+    const ObbEdge& d = tree.edges()[static_cast<std::size_t>(number)];
+    return at(tree.vertex(d.to)) - at(tree.vertex(d.from));
+  }
+  const ObbTriangle& t = tree.triangles()[static_cast<std::size_t>(number)];
+  const IntervalVec3 v[3] = {at(tree.vertex(t.vertex[0])), at(tree.vertex(t.vertex[1])), at(tree.vertex(t.vertex[2]))};
+  return cross(v[1] - v[0], v[2] - v[1]);
+}
+
 }  // namespace
 
 void EquationSet::clear() {
@@ -140,7 +154,6 @@ void EquationSet::clear() {
 }
 
 void EquationSet::add(const std::vector<BodyPair>& pairs, const LeafPair* leaf, const LeafPair* end) {
-  enum { vertex, edge, face };
   while (leaf < end) {
     const std::int32_t number = leaf->pair;
     const BodyPair& pair = pairs[static_cast<std::size_t>(number)];
@@ -157,7 +170,7 @@ void EquationSet::add(const std::vector<BodyPair>& pairs, const LeafPair* leaf, 
         if (numbers.size() < sizes[kind]) numbers.resize(sizes[kind], -1);
       }
     }
-    const auto element = [&](int body, int kind, int feature) {
+    const auto element = [&](int body, Feature kind, int feature) {
       std::int32_t& n = numbers_[body][kind][static_cast<std::size_t>(feature)];
       if (n >= 0) return n;
       n = static_cast<std::int32_t>(elements_.size());
@@ -167,18 +180,7 @@ void EquationSet::add(const std::vector<BodyPair>& pairs, const LeafPair* leaf, 
       e.pair = number;
       e.moves = body == 1;
       e.direction = kind != vertex;
-      const ObbTree& tree = *trees[body];
-      if (kind == vertex) {
-        e.own = at(tree.vertex(feature));
-      } else if (kind == edge) {
-        const ObbEdge& d = tree.edges()[static_cast<std::size_t>(feature)];
-        e.own = at(tree.vertex(d.to)) - at(tree.vertex(d.from));
-      } else {
-        const ObbTriangle& t = tree.triangles()[static_cast<std::size_t>(feature)];
-        const IntervalVec3 v[3] = {at(tree.vertex(t.vertex[0])), at(tree.vertex(t.vertex[1])),
-                                   at(tree.vertex(t.vertex[2]))};
-        e.own = cross(v[1] - v[0], v[2] - v[1]);
-      }
+      e.own = vectorOf(*trees[body], kind, feature);
       e.over = e.middle = e.own;
       e.rate = IntervalVec3(Interval(0.0), Interval(0.0), Interval(0.0));
       return n;
@@ -263,8 +265,8 @@ Interval derivativeOver(const Equation& q, const Element* e) {
   }
 }
 
-/// For each vertex x of B: n . x over T, as it is and by the mean value theorem, n . x(m) + h (n . x'), whichever is
-/// tighter; the same n, to the last bit, for all.
+/// For each vertex x of B: n . x over T. It is taken as it is, or by the mean value theorem, n . x(m) + h (n . x'),
+/// whichever is tighter. All vertices have the same n, to the last bit.
 bool certainlyApart(const Equation& q, const Element* elements, Interval h, double& gap) {
   const Nearest nearest = nearestInMiddle(q, elements);
   gap = nearest.distance();

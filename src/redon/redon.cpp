@@ -27,11 +27,12 @@ using engine::Query;
 using Clock = std::chrono::steady_clock;
 
 /// Their equations and elements take some 100 MB at most.
-constexpr std::size_t kMostLeaves = 1 << 15;
+constexpr std::size_t kMaxLeaves = 1 << 15;
 
-/// Without a work budget a query by the paper's method ends here, in units of workOf(), and is the engine's: bodies
-/// that slide on each other are divided down to the narrowest intervals all along their way. A unit takes 0.1 to 1 us.
-constexpr std::uint64_t kMostWork = 1 << 17;
+/// Without a work budget, the paper's method gives up a query after this much work, in units of workOf(), and the
+/// engine answers it. Bodies that slide on each other are divided down to the narrowest intervals all along their way.
+/// A unit takes 0.1 to 1 us.
+constexpr std::uint64_t kMaxWork = 1 << 17;
 
 /// Adds up the time of stages, where it is asked for.
 class StageClock {
@@ -55,7 +56,7 @@ class StageClock {
 struct Workspace::Impl {
   Culling culling;
   SweptVolumes volumes;
-  Solver solver;
+  RootSolver solver;
   std::vector<BodyPair> pairs, one;  ///< that may touch; the one of them that is looked at
   std::vector<LeafPair> leaves;
   EquationSet equations;
@@ -66,10 +67,10 @@ struct Workspace::Impl {
   std::vector<double> free_until;       ///< by pair of the problem: proven free before
   std::vector<std::uint8_t> scene_allowed, link_allowed;
   std::vector<double> still;  ///< coefficients of a motion that rests at t = 0
-  // The engine's part of the problem, and what it is asked: both stay for its pairMotion().
+  // The engine's part of the problem, and its query: both stay for its pairMotion().
   Problem rest;
   Query first;       ///< the query, for the first contact
-  Query rest_query;  ///< the same with progress no later than what is known of all pairs
+  Query rest_query;  ///< the same; its progress is no later than the time up to which all pairs are known to be free
 };
 
 Workspace::Workspace() : impl_(std::make_unique<Impl>()) {}
@@ -77,7 +78,7 @@ Workspace::~Workspace() = default;
 
 namespace {
 
-/// Passes progress on, no later than what is proven of the pairs that the solver at work knows nothing of.
+/// Passes progress on, but no later than the proven time of the pairs that the solver at work does not have.
 struct Progress {
   bool (*tell)(void* context, double t_lower);
   void* context;
@@ -89,12 +90,12 @@ struct Progress {
 };
 
 /// One query on its way. Each pair asked for has the time up to which it is proven free: 0 at first, and raised by
-/// proofs only (provenFree). The answer is free when that is 1 for all of them, and its t_lower is the least. So what
-/// no stage has come to, for whatever reason, counts as not free.
-class Run {
+/// proofs only (provenFree). The answer is free if that is 1 for all of them, and its t_lower is the least. So a pair
+/// that no stage has come to, for whatever reason, counts as not free.
+class PendingQuery {
  public:
-  Run(Workspace::Impl& w, engine::EngineWorkspace& engine, const Problem& problem, const Query& query,
-      const Options& options, const std::function<const ObbTree*(std::int32_t)>& treeOf, Counts& counts)
+  PendingQuery(Workspace::Impl& w, engine::EngineWorkspace& engine, const Problem& problem, const Query& query,
+               const Options& options, const std::function<const ObbTree*(std::int32_t)>& treeOf, Counts& counts)
       : w_(w), engine_(engine), problem_(problem), query_(query), options_(options), treeOf_(treeOf), counts_(counts) {}
 
   void solve(Answer& answer);
@@ -108,9 +109,9 @@ class Run {
   void leaveAll(Answer& answer);
   void solveRest(const Query& query, Answer& answer);
   void findPairs();
-  Found search(const std::vector<BodyPair>& pairs, double limit);
-  Found searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit);
-  Found solveLeaves(const std::vector<BodyPair>& pairs, double begin, double end, double limit);
+  SearchOutcome search(const std::vector<BodyPair>& pairs, double limit);
+  SearchOutcome searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit);
+  SearchOutcome solveLeaves(const std::vector<BodyPair>& pairs, double begin, double end, double limit);
   void keepFirst(std::size_t begin, double bracket);
   void provenFree(PairId pair, double until) {
     FCL_ARTIC_ASSERT(indexOf(pair) < numPairs() && until >= 0 && until <= 1);
@@ -127,14 +128,14 @@ class Run {
   Counts& counts_;
 };
 
-bool Run::asked(PairId pair) const {
+bool PendingQuery::asked(PairId pair) const {
   return (problem_.isScenePair(pair) ? query_.check_scene : query_.check_self) && !problem_.isAllowed(pair);
 }
 
 /// Triangles on both sides, no margin, and a motion by joints. Nor has the pair a margin of its own, as neighbours have
-/// that are checked for touching: the paper checks none, and its boxes are apart at no time where a joint holds two
-/// links together.
-bool Run::ours(PairId pair) const {
+/// that are checked for touching. The paper checks no neighbours: its boxes are apart at no time where a joint holds
+/// two links together.
+bool PendingQuery::ours(PairId pair) const {
   const engine::PairParts parts = problem_.parts(pair);
   if (query_.margins.of(pair) > 0 || query_.margins.isOwn(pair)) return false;
   if (parts.step_b >= 0 && problem_.sweeps[parts.sweep].local_bounds) return false;
@@ -142,7 +143,7 @@ bool Run::ours(PairId pair) const {
 }
 
 /// @return whether any pair is the paper's.
-bool Run::choosePairs() {
+bool PendingQuery::choosePairs() {
   w_.by_engine.assign(numPairs(), 0);
   w_.free_until.assign(numPairs(), 1);  // of pairs that nobody asks for
   bool any = false;
@@ -156,11 +157,11 @@ bool Run::choosePairs() {
   return any;
 }
 
-/// The paper starts without contact. The certificate, at rest at t = 0, decides whether that is so: surfaces that
-/// cross, and solids that hold others. A pair of which it can't be proven is the engine's.
-/// @return true when all pairs are: there is contact at t = 0 where the first one is asked for, or it is not known
-///   which pairs touch.
-bool Run::touchesAtStart(Answer& answer) {
+/// The paper starts without contact. The certificate, with all bodies at rest at t = 0, decides whether that is so;
+/// contact is surfaces that cross, and solids that hold others. If a pair can't be proven apart, it goes to the engine.
+/// @return true if all pairs go to the engine: the first contact is asked for and is at t = 0, or it is not known which
+///   pairs touch.
+bool PendingQuery::touchesAtStart(Answer& answer) {
   const auto n = static_cast<std::size_t>(query_.num_variables);
   const std::int32_t degree = query_.half_angles.count > 0 ? 2 : 1;
   w_.still.assign((static_cast<std::size_t>(degree) + 1) * n, 0);
@@ -172,8 +173,8 @@ bool Run::touchesAtStart(Answer& answer) {
   still.progress = nullptr;
   still.describe_contacts = false;
   still.num_advisors = 0;  // they know of the motion itself
-  // The pairs not proven apart at t = 0 are those that the engine would ignore; its list of them is never cut.
-  // When they part is no question at rest, nor is any time finer than all of it.
+  // The pairs not proven apart at t = 0 are those that the engine would ignore; its list of them is never cut. At rest
+  // there is no time at which they part, and no finer time than all of it.
   still.every_pair = false;
   still.ignore_initial = query_.every_pair || query_.ignore_initial;
   if (still.ignore_initial) still.tolerance_time = 1;
@@ -184,14 +185,14 @@ bool Run::touchesAtStart(Answer& answer) {
 }
 
 /// All pairs are the engine's.
-void Run::leaveAll(Answer& answer) {
+void PendingQuery::leaveAll(Answer& answer) {
   counts_.pairs_by_standard = 0;
   for (const PairId p : problem_.pairs()) counts_.pairs_by_standard += asked(p);
   engine_.solve(problem_, query_, answer);
 }
 
 /// The engine's pairs.
-void Run::solveRest(const Query& query, Answer& answer) {
+void PendingQuery::solveRest(const Query& query, Answer& answer) {
   w_.scene_allowed.assign(static_cast<std::size_t>(problem_.num_scene_pairs), 1);
   w_.link_allowed.assign(static_cast<std::size_t>(problem_.num_link_pairs), 1);
   std::uint64_t left = 0;
@@ -211,8 +212,8 @@ void Run::solveRest(const Query& query, Answer& answer) {
   }
 }
 
-/// The paper's pairs that dynamic BVH culling (Section 4) leaves, and of these what culling by visibility leaves.
-void Run::findPairs() {
+/// Finds the paper's pairs that dynamic BVH culling (Section 4) and then culling by visibility leave.
+void PendingQuery::findPairs() {
   StageClock clock(query_.measure_times);
   const auto wanted = [this](PairId p) { return asked(p) && !w_.by_engine[indexOf(p)]; };
   w_.culling.begin(problem_, w_.rest_query, options_, counts_);
@@ -229,17 +230,17 @@ void Run::findPairs() {
   }
 }
 
-/// First contact in [begin, end] of the leaf pairs at hand: all equations at once, but of no more than kMostLeaves
-/// pairs, so that memory is bounded.
-Found Run::solveLeaves(const std::vector<BodyPair>& pairs, double begin, double end, double limit) {
-  Found all;
+/// First contact in [begin, end] of the leaf pairs at hand. All equations are solved at once, but for at most
+/// kMaxLeaves pairs, so memory is bounded.
+SearchOutcome PendingQuery::solveLeaves(const std::vector<BodyPair>& pairs, double begin, double end, double limit) {
+  SearchOutcome all;
   all.free_until = end;
-  for (std::size_t first = 0; first < w_.leaves.size(); first += kMostLeaves) {
-    const std::size_t last = std::min(first + kMostLeaves, w_.leaves.size());
+  for (std::size_t first = 0; first < w_.leaves.size(); first += kMaxLeaves) {
+    const std::size_t last = std::min(first + kMaxLeaves, w_.leaves.size());
     w_.equations.clear();
     w_.equations.add(pairs, w_.leaves.data() + first, w_.leaves.data() + last);
     const bool more = last < w_.leaves.size();
-    const Found found =
+    const SearchOutcome found =
         w_.solver.solve(pairs, w_.equations, begin, end, limit, more ? begin : all.free_until, w_.contacts);
     all.contact = all.contact || found.contact;
     all.t_upper = std::min(all.t_upper, found.t_upper);
@@ -256,10 +257,10 @@ Found Run::solveLeaves(const std::vector<BodyPair>& pairs, double begin, double 
 
 /// First contact of these pairs: boxes, then the equations of the triangles whose boxes meet, one sub-interval after
 /// the other, from the first to that which holds `limit`.
-Found Run::search(const std::vector<BodyPair>& pairs, double limit) {
+SearchOutcome PendingQuery::search(const std::vector<BodyPair>& pairs, double limit) {
   if (!options_.in_time_order) return searchBoxesFirst(pairs, limit);
   StageClock clock(query_.measure_times);
-  Found found;
+  SearchOutcome found;
   w_.culling.start(pairs);
   w_.leaves.clear();
   for (int slot = 0; slot < w_.culling.numSlots(); ++slot) {
@@ -281,11 +282,11 @@ Found Run::search(const std::vector<BodyPair>& pairs, double limit) {
   return found;
 }
 
-/// The same as the paper has it: all triangles whose boxes meet at any time, then all their equations at once. Boxes
-/// are left out only in sub-intervals that begin after `limit`; of the rest all equations are solved.
-Found Run::searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit) {
+/// As search(), in the paper's order: all triangles whose boxes meet at any time, then all their equations at once.
+/// Boxes are left out only in sub-intervals that begin after `limit`; for the rest all equations are solved.
+SearchOutcome PendingQuery::searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit) {
   StageClock clock(query_.measure_times);
-  Found found;
+  SearchOutcome found;
   w_.culling.start(pairs);
   w_.leaves.clear();
   double end = 0;
@@ -301,8 +302,9 @@ Found Run::searchBoxesFirst(const std::vector<BodyPair>& pairs, double limit) {
   return found;
 }
 
-/// Of the contacts from `begin` on those within the bracket, the first one of each pair, as many as are asked for.
-void Run::keepFirst(std::size_t begin, double bracket) {
+/// Keeps, of the contacts from `begin` on that lie within the bracket, the first one of each pair, as many as are asked
+/// for.
+void PendingQuery::keepFirst(std::size_t begin, double bracket) {
   std::vector<LeafContact>& all = w_.contacts;
   const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
   all.erase(std::remove_if(first, all.end(), [&](const LeafContact& c) { return c.t_lower > bracket; }), all.end());
@@ -323,11 +325,11 @@ void Run::keepFirst(std::size_t begin, double bracket) {
   all.resize(std::min(all.size(), begin + static_cast<std::size_t>(query_.max_contacts)));
 }
 
-void Run::solve(Answer& answer) {
+void PendingQuery::solve(Answer& answer) {
   counts_ = Counts();
   w_.contacts.clear();
   if (!choosePairs() || touchesAtStart(answer)) return leaveAll(answer);
-  // Of the paper's pairs nothing is known while the engine looks at its own.
+  // Nothing is known of the paper's pairs while the engine looks at its own.
   Progress progress{query_.progress, query_.progress_context};
   Query& query = w_.rest_query;
   query = query_;
@@ -341,9 +343,9 @@ void Run::solve(Answer& answer) {
   for (int i = 0; i < answer.num_contacts; ++i) w_.contacts.push_back(answer.contacts[i]);
 
   std::optional<RoundUpward> upward(std::in_place);
-  if (query.work_budget == 0) query.work_budget = kMostWork;
+  if (query.work_budget == 0) query.work_budget = kMaxWork;
   w_.solver.begin(problem_, query, options_, counts_);
-  const auto take = [&](const std::vector<BodyPair>& pairs, const Found& found) {
+  const auto take = [&](const std::vector<BodyPair>& pairs, const SearchOutcome& found) {
     for (const BodyPair& pair : pairs) provenFree(pair.index, found.free_until);
     t_upper = std::min(t_upper, found.t_upper);
     contact = contact || found.contact;
@@ -358,12 +360,12 @@ void Run::solve(Answer& answer) {
     for (std::size_t i = 0; i < w_.pairs.size() && !out_of_budget; ++i) {
       const std::size_t before = w_.contacts.size();
       w_.one.assign(1, w_.pairs[i]);
-      const Found found = search(w_.one, engine::kNever);
+      const SearchOutcome found = search(w_.one, engine::kNever);
       take(w_.one, found);
       keepFirst(before, latestBegin(found, query_.tolerance_time));
     }
   }
-  if (out_of_budget && query_.work_budget == 0 && workOf(counts_) > kMostWork) {
+  if (out_of_budget && query_.work_budget == 0 && workOf(counts_) > kMaxWork) {
     upward.reset();
     w_.contacts.clear();
     return leaveAll(answer);
@@ -390,8 +392,8 @@ void solve(Workspace& workspace, engine::EngineWorkspace& engine, const Problem&
            Counts& counts) {
   Query& first = workspace.impl().first;
   first = query;
-  first.any = false;  // where any contact would do, the first one is looked for
-  Run(workspace.impl(), engine, problem, first, options, treeOf, counts).solve(answer);
+  first.any = false;  // if any contact would do, the first one is looked for
+  PendingQuery(workspace.impl(), engine, problem, first, options, treeOf, counts).solve(answer);
 }
 
 }  // namespace redon

@@ -18,7 +18,8 @@ constexpr double kNoGap = 8;
 
 }  // namespace
 
-void Solver::begin(const engine::Problem& problem, const engine::Query& query, const Options& options, Counts& counts) {
+void RootSolver::begin(const engine::Problem& problem, const engine::Query& query, const Options& options,
+                       Counts& counts) {
   problem_ = &problem;
   query_ = &query;
   options_ = &options;
@@ -28,7 +29,7 @@ void Solver::begin(const engine::Problem& problem, const engine::Query& query, c
   middle_.begin(problem, query, enclosure, !options.simultaneous, counts);
 }
 
-void Solver::setInterval(double begin, double end) {
+void RootSolver::setInterval(double begin, double end) {
   begin_ = begin;
   end_ = end;
   mid_ = begin + 0.5 * (end - begin);
@@ -38,8 +39,8 @@ void Solver::setInterval(double begin, double end) {
   ++stamp_;
 }
 
-/// Once per interval and pair, whatever number of equations ask.
-const PairBounds& Solver::motionOf(std::int32_t index) {
+/// Computed once per interval and pair, however many equations ask.
+const PairBounds& RootSolver::motionOf(std::int32_t index) {
   const auto i = static_cast<std::size_t>(index);
   PairBounds& m = motions_[i];
   if (motion_stamps_[i] == stamp_) return m;
@@ -52,7 +53,7 @@ const PairBounds& Solver::motionOf(std::int32_t index) {
   return m;
 }
 
-void Solver::boundElements(const Equation& q) {
+void RootSolver::boundElements(const Equation& q) {
   std::vector<Element>& elements = set_->elements();
   for (const std::int32_t i : q.element) {
     if (i < 0) continue;
@@ -65,7 +66,7 @@ void Solver::boundElements(const Equation& q) {
 
 /// Narrows the part of the present interval in which the equation may have a root; false when there is none.
 /// @param validity  asks for the features, too.
-bool Solver::mayHaveRoot(Active& active, double begin, double end, bool validity) {
+bool RootSolver::mayHaveRoot(Active& active, double begin, double end, bool validity) {
   const Equation& q = set_->equations()[static_cast<std::size_t>(active.equation)];
   active.lo = std::max(begin, q.from);
   active.hi = end;
@@ -86,11 +87,11 @@ bool Solver::mayHaveRoot(Active& active, double begin, double end, bool validity
   return active.lo <= active.hi;
 }
 
-Found Solver::solve(const std::vector<BodyPair>& pairs, EquationSet& equations, double begin, double end, double limit,
-                    double free_else, std::vector<engine::LeafContact>& contacts) {
+SearchOutcome RootSolver::solve(const std::vector<BodyPair>& pairs, EquationSet& equations, double begin, double end,
+                                double limit, double free_else, std::vector<engine::LeafContact>& contacts) {
   pairs_ = &pairs;
   set_ = &equations;
-  free_else_ = options_->simultaneous ? free_else : 0;  // an equation by itself says nothing of the others
+  free_else_ = options_->simultaneous ? free_else : 0;  // an equation solved by itself proves nothing about the others
   motions_.resize(pairs.size());
   motion_stamps_.assign(pairs.size(), -1);
   const std::size_t n = equations.equations().size();
@@ -100,10 +101,10 @@ Found Solver::solve(const std::vector<BodyPair>& pairs, EquationSet& equations, 
     for (std::size_t i = 0; i < n; ++i) active_.push_back({static_cast<std::int32_t>(i), begin, end});
     return search(0, begin, end, limit, contacts);
   }
-  // The paper's baseline: each by itself, up to the first root found so far. Before all are looked at nothing more is
-  // proven of the pairs than that they enter without contact.
-  Found found;
-  found.free_until = begin;
+  // The paper's baseline: each equation by itself, up to the first root found so far. Until all are solved, it is only
+  // proven that the pairs enter without contact.
+  SearchOutcome outcome;
+  outcome.free_until = begin;
   double least = end;
   for (std::size_t i = 0; i < n; ++i) {
     const double from = std::max(begin, equations.equations()[i].from);
@@ -112,69 +113,69 @@ Found Solver::solve(const std::vector<BodyPair>& pairs, EquationSet& equations, 
       continue;
     }
     active_.assign(1, {static_cast<std::int32_t>(i), from, end});
-    const Found own = search(0, from, end, limit, contacts);
-    found.out_of_budget = own.out_of_budget;
-    if (own.out_of_budget) return found;
+    const SearchOutcome own = search(0, from, end, limit, contacts);
+    outcome.out_of_budget = own.out_of_budget;
+    if (own.out_of_budget) return outcome;
     least = std::min(least, own.free_until);
     if (!own.contact) continue;
-    found.contact = true;
-    found.t_upper = std::min(found.t_upper, own.t_upper);
+    outcome.contact = true;
+    outcome.t_upper = std::min(outcome.t_upper, own.t_upper);
     limit = std::min(limit, latestBegin(own, query_->tolerance_time));
   }
-  found.free_until = least;
-  return found;
+  outcome.free_until = least;
+  return outcome;
 }
 
 /// Depth first, the earlier half first: whatever lies before the present interval is free of roots.
-Found Solver::search(std::size_t first, double begin, double end, double limit,
-                     std::vector<engine::LeafContact>& contacts) {
-  Found found;
-  tasks_.assign(1, {begin, end, first, active_.size() - first});
-  while (!tasks_.empty()) {
-    const Task task = tasks_.back();
-    tasks_.pop_back();
-    active_.resize(task.first + task.count);
-    found.free_until = task.begin;
-    if (task.begin > limit) return found;
+SearchOutcome RootSolver::search(std::size_t first, double begin, double end, double limit,
+                                 std::vector<engine::LeafContact>& contacts) {
+  SearchOutcome outcome;
+  open_intervals_.assign(1, {begin, end, first, active_.size() - first});
+  while (!open_intervals_.empty()) {
+    const OpenInterval interval = open_intervals_.back();
+    open_intervals_.pop_back();
+    active_.resize(interval.first + interval.count);
+    outcome.free_until = interval.begin;
+    if (interval.begin > limit) return outcome;
     if (query_->work_budget && workOf(*counts_) > query_->work_budget) {
-      found.out_of_budget = true;
-      return found;
+      outcome.out_of_budget = true;
+      return outcome;
     }
     if (query_->progress && (counts_->intervals & 255) == 0) {
       const RoundToNearest usual;  // for the caller's code
-      found.out_of_budget = !query_->progress(query_->progress_context, std::min(task.begin, free_else_));
-      if (found.out_of_budget) return found;
+      outcome.out_of_budget = !query_->progress(query_->progress_context, std::min(interval.begin, free_else_));
+      if (outcome.out_of_budget) return outcome;
     }
     ++counts_->intervals;
-    setInterval(task.begin, task.end);
-    // What stays active moves up; the task's own entries are spent by then.
+    setInterval(interval.begin, interval.end);
+    // Equations that stay active move up; the interval's own entries are spent by then.
     const bool validity = options_->early_validity;
-    std::size_t kept = task.first;
-    double lo = task.end, hi = task.begin;
-    for (std::size_t i = task.first; i < task.first + task.count; ++i) {
+    std::size_t kept = interval.first;
+    double lo = interval.end, hi = interval.begin;
+    for (std::size_t i = interval.first; i < interval.first + interval.count; ++i) {
       Active a = active_[i];
-      if (!mayHaveRoot(a, task.begin, task.end, validity)) continue;
+      if (!mayHaveRoot(a, interval.begin, interval.end, validity)) continue;
       lo = std::min(lo, a.lo);
       hi = std::max(hi, a.hi);
       active_[kept++] = a;
     }
     active_.resize(kept);
-    if (kept == task.first) continue;
+    if (kept == interval.first) continue;
     // All are reduced to [lo, hi] (Section 5.2.4).
-    if (task.end - task.begin <= std::max(0.5 * query_->tolerance_time, kNarrowest)) {
-      if (settle(task, kept, found, contacts)) return found;
+    if (interval.end - interval.begin <= std::max(0.5 * query_->tolerance_time, kNarrowest)) {
+      if (settle(interval, kept, outcome, contacts)) return outcome;
       kept = active_.size();  // those that may touch still
-      if (kept == task.first) continue;
+      if (kept == interval.first) continue;
     }
     const double middle = lo + 0.5 * (hi - lo);
-    if (hi - lo <= 0.5 * (task.end - task.begin)) {  // no need to divide what is left
-      tasks_.push_back({lo, hi, task.first, kept - task.first});
+    if (hi - lo <= 0.5 * (interval.end - interval.begin)) {  // no need to divide what is left
+      open_intervals_.push_back({lo, hi, interval.first, kept - interval.first});
       continue;
     }
     // The later half below, to stay while the earlier one is worked on.
     const std::size_t later = kept;
     double later_lo = hi, earlier_hi = lo;
-    for (std::size_t i = task.first; i < kept; ++i) {
+    for (std::size_t i = interval.first; i < kept; ++i) {
       const Active a = active_[i];
       if (a.hi >= middle) {
         active_.push_back(a);
@@ -182,28 +183,28 @@ Found Solver::search(std::size_t first, double begin, double end, double limit,
       }
     }
     const std::size_t earlier = active_.size();
-    for (std::size_t i = task.first; i < kept; ++i) {
+    for (std::size_t i = interval.first; i < kept; ++i) {
       const Active a = active_[i];
       if (a.lo <= middle) {
         active_.push_back(a);
         earlier_hi = std::max(earlier_hi, std::min(middle, a.hi));
       }
     }
-    if (earlier > later) tasks_.push_back({later_lo, hi, later, earlier - later});
-    if (active_.size() > earlier) tasks_.push_back({lo, earlier_hi, earlier, active_.size() - earlier});
+    if (earlier > later) open_intervals_.push_back({later_lo, hi, later, earlier - later});
+    if (active_.size() > earlier) open_intervals_.push_back({lo, earlier_hi, earlier, active_.size() - earlier});
   }
-  found.free_until = end;
-  return found;
+  outcome.free_until = end;
+  return outcome;
 }
 
-Interval Solver::valueAt(const Equation& q, double t) {
+Interval RootSolver::valueAt(const Equation& q, double t) {
   setInterval(t, t);
   boundElements(q);
   return value(q, set_->elements().data(), &Element::over);
 }
 
-/// A window round [begin, end] in which the function changes its sign, its features meeting all the while.
-bool Solver::certify(const Equation& q, double begin, double end, double& t_upper) {
+/// Finds a window around [begin, end] in which the function changes its sign while its features meet.
+bool RootSolver::certify(const Equation& q, double begin, double end, double& t_upper) {
   const double room = query_->tolerance_time - (end - begin);
   for (const double part : {0x1p-16, 0x1p-8, 0x1p-2, 0.0}) {
     const double from = std::max(0.0, begin - part * room), to = std::min(1.0, end + part * room);
@@ -220,25 +221,27 @@ bool Solver::certify(const Equation& q, double begin, double end, double& t_uppe
   return false;
 }
 
-/// The last interval: are the roots of the task's equations contacts? Those whose features are apart are dropped.
+/// The last interval: are the roots of the interval's equations contacts? Roots whose features are apart are dropped.
 /// @return true when contact is found; else what is left is to be divided on.
-bool Solver::settle(const Task& task, std::size_t end, Found& found, std::vector<engine::LeafContact>& contacts) {
-  const bool narrowest = task.end - task.begin <= kNarrowest;
+bool RootSolver::settle(const OpenInterval& interval, std::size_t end, SearchOutcome& outcome,
+                        std::vector<engine::LeafContact>& contacts) {
+  const bool narrowest = interval.end - interval.begin <= kNarrowest;
   struct Root {
     Active active;
     bool certain;
     double t_upper;
   };
   std::vector<Root> roots;
-  std::size_t kept = task.first;
+  std::size_t kept = interval.first;
   double first_lo = engine::kNever;
-  for (std::size_t i = task.first; i < end; ++i) {
+  for (std::size_t i = interval.first; i < end; ++i) {
     const Active active = active_[i];
     const Equation& q = set_->equations()[static_cast<std::size_t>(active.equation)];
-    setInterval(task.begin, task.end);
+    setInterval(interval.begin, interval.end);
     boundElements(q);
-    double gap, known = 0;  // in the middle, and what positions there are known to
-    if (certainlyApart(q, set_->elements().data(), Interval(task.begin, task.end) - Interval(mid_), gap)) continue;
+    double gap, known = 0;  // in the middle, and the error of positions there
+    if (certainlyApart(q, set_->elements().data(), Interval(interval.begin, interval.end) - Interval(mid_), gap))
+      continue;
     active_[kept++] = active;
     first_lo = std::min(first_lo, active.lo);
     for (const std::int32_t e : q.element) {
@@ -253,18 +256,18 @@ bool Solver::settle(const Task& task, std::size_t end, Found& found, std::vector
   }
   active_.resize(kept);
   if (roots.empty()) return false;
-  found.contact = true;
-  found.free_until = first_lo;  // of those that are no contact, too: they are not decided
+  outcome.contact = true;
+  outcome.free_until = first_lo;  // roots that are no contact count, too: they are not decided
   for (const Root& root : roots) {
-    if (root.certain) found.t_upper = std::min(found.t_upper, root.t_upper);
+    if (root.certain) outcome.t_upper = std::min(outcome.t_upper, root.t_upper);
     report(set_->equations()[static_cast<std::size_t>(root.active.equation)], std::max(root.active.lo, first_lo),
            root.certain, root.t_upper, contacts);
   }
   return true;
 }
 
-void Solver::report(const Equation& q, double begin, bool certain, double t_upper,
-                    std::vector<engine::LeafContact>& contacts) {
+void RootSolver::report(const Equation& q, double begin, bool certain, double t_upper,
+                        std::vector<engine::LeafContact>& contacts) {
   const BodyPair& pair = (*pairs_)[static_cast<std::size_t>(q.pair)];
   engine::LeafContact contact = {};
   contact.pair = pair.index;

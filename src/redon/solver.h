@@ -14,26 +14,26 @@ namespace fcl_artic {
 namespace redon {
 
 /// The proof of a search: nothing, until it says so.
-struct Found {
+struct SearchOutcome {
   bool contact = false, out_of_budget = false;
   double free_until = 0;            ///< no contact before; what was not looked at is not free
   double t_upper = engine::kNever;  ///< contact is proven to be no later; kNever: none is
 };
 
 /// A contact that begins later than this is not the first one, where this one is found.
-inline double latestBegin(const Found& found, double tolerance_time) {
-  return found.t_upper < engine::kNever ? found.t_upper : found.free_until + tolerance_time;
+inline double latestBegin(const SearchOutcome& outcome, double tolerance_time) {
+  return outcome.t_upper < engine::kNever ? outcome.t_upper : outcome.free_until + tolerance_time;
 }
 
-class Solver {
+class RootSolver {
  public:
   void begin(const engine::Problem& problem, const engine::Query& query, const Options& options, Counts& counts);
   /// First contact in [begin, end], which the pairs enter without contact.
   /// @param limit  what begins later does not matter, and is not looked at.
   /// @param free_else  no contact of what is not among these equations before this time.
   /// @param[out] contacts  all valid roots of the time interval in which the first was found are appended.
-  Found solve(const std::vector<BodyPair>& pairs, EquationSet& equations, double begin, double end, double limit,
-              double free_else, std::vector<engine::LeafContact>& contacts);
+  SearchOutcome solve(const std::vector<BodyPair>& pairs, EquationSet& equations, double begin, double end,
+                      double limit, double free_else, std::vector<engine::LeafContact>& contacts);
 
  private:
   /// An equation that may have a root in [lo, hi].
@@ -42,16 +42,18 @@ class Solver {
     double lo, hi;
   };
   /// Part of the active equations, waiting for their time.
-  struct Task {
+  struct OpenInterval {
     double begin, end;
     std::size_t first, count;  ///< in active_
   };
-  Found search(std::size_t first, double begin, double end, double limit, std::vector<engine::LeafContact>& contacts);
+  SearchOutcome search(std::size_t first, double begin, double end, double limit,
+                       std::vector<engine::LeafContact>& contacts);
   void setInterval(double begin, double end);
   const PairBounds& motionOf(std::int32_t pair);
   void boundElements(const Equation& q);
   bool mayHaveRoot(Active& active, double begin, double end, bool validity);
-  bool settle(const Task& task, std::size_t end, Found& found, std::vector<engine::LeafContact>& contacts);
+  bool settle(const OpenInterval& interval, std::size_t end, SearchOutcome& outcome,
+              std::vector<engine::LeafContact>& contacts);
   bool certify(const Equation& q, double begin, double end, double& t_upper);
   void report(const Equation& q, double begin, bool certain, double t_upper,
               std::vector<engine::LeafContact>& contacts);
@@ -71,7 +73,7 @@ class Solver {
   std::vector<PairBounds> motions_;
   std::vector<std::int32_t> motion_stamps_;
   std::vector<Active> active_;
-  std::vector<Task> tasks_;
+  std::vector<OpenInterval> open_intervals_;
 };
 
 }  // namespace redon

@@ -38,7 +38,7 @@ void SweptVolumes::sweep(const engine::Problem& problem, const engine::Query& qu
     chains_.setInterval(k / 16.0, k / 16.0, Derivatives::none);
     for (const Volume& v : volumes_) {
       const FrameBounds& frame = chains_.frame(v.sweep, v.step);
-      double places[2][3], error = 0;  // what the places are known to: the part's radius takes all three
+      double places[2][3], error = 0;  // the places' error; the part's radius takes all three
       for (int end = 0; end < 2; ++end) {
         const IntervalVec3 at = frame.pose * v.ends[end], place = v.seen_from ? *v.seen_from * at : at;
         IntervalVec3 off;

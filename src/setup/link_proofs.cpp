@@ -92,7 +92,7 @@ void ProvenPairs::buildSelf(const Registry& registry, const engine::Problem& pro
         if (!overlaps) undecided.emplace(pair->finding.link1, pair->finding.link2);
         return;  // notes() names it
       }
-      // An allowed pair that overlaps in the joint counts where parts of it are apart, which a contact may hide.
+      // An allowed pair that overlaps in the joint counts if parts of it are apart: a contact of these may be hidden.
       if (overlaps && pair->apart.empty()) return;
     }
     excused[std::minmax(a.name, b.name)].push_back(find(a, b, 0));
@@ -104,7 +104,7 @@ void ProvenPairs::buildSelf(const Registry& registry, const engine::Problem& pro
         allowed_.push_back({allowed_self_, proof->margin, proof->variables, own});
       }
     }
-    // A pair is proven apart where all of its geometries are.
+    // A pair is proven apart if all of its geometries are.
     if (std::count(found.begin(), found.end(), nullptr) > 0) {
       while (!allowed_.empty() && allowed_.back().number == allowed_self_) allowed_.pop_back();
     }

@@ -28,8 +28,9 @@ void LinkTables::build(const Registry& registry, const engine::Problem& problem,
   const KinematicTree& tree = *registry.tree();
   std::vector<std::size_t> pairs, unknown;  // unknown: into both
   std::size_t next = 0;
-  while (next < num_self_pairs && num_tables_ < kMost) {
-    // Some pairs, then what is made of them on all cores: the same pairs get tables whatever was known before.
+  while (next < num_self_pairs && num_tables_ < kMax) {
+    // Takes a block of pairs, then makes their tables on all cores. So the same pairs get tables, whatever was known
+    // before.
     const std::size_t begin = made_.size();
     unknown.clear();
     for (; next < num_self_pairs && made_.size() < begin + kBlock; ++next) {
@@ -89,9 +90,9 @@ void LinkTables::likelyContacts(const JointMotion& motion, std::vector<engine::L
   found.clear();
   const Eigen::MatrixXd& variables = motion.variables();
   const engine::HalfAngles half_angles = halfAnglesOf(motion);
-  constexpr int kMost = 64, kLast = 7;
-  double parts[2][kMost];
-  if (grids_.empty() || variables.rows() > kMost) return;
+  constexpr int kMax = 64, kLast = 7;
+  double parts[2][kMax];
+  if (grids_.empty() || variables.rows() > kMax) return;
   const auto evaluate = [&](int part, double* of_ranges) {
     const double t = (part + 0.5) / (kLast + 1);
     for (const auto& [v, range] : ranges_) {
@@ -101,14 +102,14 @@ void LinkTables::likelyContacts(const JointMotion& motion, std::vector<engine::L
       of_ranges[v] = range.part(q);
     }
   };
-  const auto look = [&](int part, const double* of_ranges) {
+  const auto addLikely = [&](int part, const double* of_ranges) {
     for (const Grid& grid : grids_) {
       if (likely_[grid.first + grid.axes.cell(of_ranges)]) found.push_back({grid.link_pair, part});
     }
   };
-  // Motions that meet something mostly still do at their end.
+  // Most motions that meet something still touch it at their end.
   evaluate(kLast, parts[0]);
-  look(kLast, parts[0]);
+  addLikely(kLast, parts[0]);
   evaluate(0, parts[1]);
   // About as many poses between the ends as the motion goes through cells.
   double cells = 0;
@@ -117,9 +118,9 @@ void LinkTables::likelyContacts(const JointMotion& motion, std::vector<engine::L
   for (int i = between; i > 0; --i) {
     const int part = (kLast * i + (between + 1) / 2) / (between + 1);
     evaluate(part, parts[0]);
-    look(part, parts[0]);
+    addLikely(part, parts[0]);
   }
-  look(0, parts[1]);
+  addLikely(0, parts[1]);
 }
 
 }  // namespace fcl_artic

@@ -22,7 +22,7 @@ namespace fcl_artic {
 class LinkTables {
  public:
   /// Tables of self pairs, for their own margins or none. (An attached object comes and goes: it gets none.) If a
-  /// robot could have many thousands, only about the first kMost pairs get one, those of the largest links. The time
+  /// robot could have many thousands, only about the first kMax pairs get one, those of the largest links. The time
   /// that tables save is lost again where they don't fit in a cache.
   /// @param num_self_pairs  number of the problem's link pairs, from the first on, that are two links.
   /// @param proven  pairs that need no table.
@@ -41,7 +41,7 @@ class LinkTables {
   void likelyContacts(const JointMotion& motion, std::vector<engine::LikelyContact>& found) const;
 
  private:
-  static constexpr std::size_t kMost = 1000, kBlock = 128;
+  static constexpr std::size_t kMax = 1000, kBlock = 128;
   /// The tables of two links, and what they were made from.
   struct Made {
     PairMaking made;

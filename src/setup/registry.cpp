@@ -107,7 +107,8 @@ void Registry::requireBody(const std::string& name, const std::string& what) con
                               text::didYouMean(name, names));
 }
 
-/// The name as given or chosen. (Allowed pairs and margins are given by name: a link's would excuse the obstacle too.)
+/// The name as given or chosen. It must not be a link's: allowed pairs and margins go by names, so the link's would
+/// hold for the obstacle too.
 std::string Registry::obstacleName(const std::string& name) const {
   std::string shown = name.empty() ? "obstacle" + std::to_string(named_) : name;
   if (obstacle_names_.count(shown)) throw std::invalid_argument("obstacle '" + shown + "': the name is taken");
@@ -182,7 +183,8 @@ bool Registry::standStill(const ManagedBody& a, const ManagedBody& b) const {
 }
 
 Excuse Registry::excuseOf(const ManagedBody& a, const ManagedBody& b) const {
-  if (standStill(a, b)) return Excuse::still;  // before what callers excuse: of these `free` takes no exception
+  // before the pairs that callers allow: `free` names no exception for pairs that stand still
+  if (standStill(a, b)) return Excuse::still;
   if (allowed_.allowed(a.name, b.name)) return Excuse::allowed;
   if (a.mayTouchLink(b) || b.mayTouchLink(a)) return Excuse::touch_link;
   if (a.attached || b.attached || !neighbours_) return Excuse::none;
@@ -255,7 +257,8 @@ void Registry::replaceObstacles(const std::vector<std::shared_ptr<const fcl::Col
                                 std::to_string(objects.size()) + " objects");
   }
   requireLinks();
-  // What stays. (Sets are made anew: taking thousands out of them one by one takes longer than all the rest.)
+  // Objects and names that stay. (Sets are made anew: taking thousands out of them one by one takes longer than all the
+  // rest.)
   std::unordered_set<const void*> known;
   std::unordered_set<std::string> taken;
   known.reserve(links_.size() + moving_.size() + objects.size());
@@ -266,7 +269,7 @@ void Registry::replaceObstacles(const std::vector<std::shared_ptr<const fcl::Col
       if (body.isObstacle()) taken.insert(body.name);
     }
   }
-  // What is read already. (Of another scene nothing is.)
+  // Obstacles that are read already. (If the scene shares no object with the last one, there are none.)
   std::unordered_map<const void*, const ManagedBody*> before;
   const auto isKnown = [&](const auto& object) { return objects_.count(object.get()) > 0; };
   if (std::any_of(objects.begin(), objects.end(), isKnown)) {

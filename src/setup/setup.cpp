@@ -42,7 +42,7 @@ void Setup::listMovers() {
 }
 
 void Setup::readSolids(const Registry& registry) {
-  // Asked of pairs with a solid mesh only; where there is none queries know nothing of it.
+  // Insides are asked about only for pairs with a solid mesh. If there is none, queries skip that.
   solids_ = false;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     bodies_[i].space = registry.body(static_cast<std::int32_t>(i)).shape->space();
@@ -67,13 +67,13 @@ engine::Problem Setup::problem() const {
   p.mover_rows = link_movers_.rows.data();
   p.num_mover_rows = static_cast<std::int32_t>(link_movers_.rows.size());
   p.num_link_pairs = static_cast<std::int32_t>(link_pairs_.size());
-  p.num_scene_pairs = static_cast<std::int32_t>(num_links_ * obstacle_bodies_.size());
-  p.scene_allowed = scene_allowed_.empty() ? nullptr : scene_allowed_.data();
-  p.num_scene_allowed = num_scene_allowed_;
-  p.obstacles = obstacle_bodies_.data();
-  p.num_obstacles = static_cast<std::int32_t>(obstacle_bodies_.size());
-  p.obstacle_tree = obstacle_tree_.empty() ? nullptr : obstacle_tree_.data();
-  p.still_bounds = still_bounds_.data();
+  p.num_scene_pairs = static_cast<std::int32_t>(num_links_ * still_.bodies.size());
+  p.scene_allowed = still_.allowed.empty() ? nullptr : still_.allowed.data();
+  p.num_scene_allowed = still_.num_allowed;
+  p.obstacles = still_.bodies.data();
+  p.num_obstacles = static_cast<std::int32_t>(still_.bodies.size());
+  p.obstacle_tree = still_.tree.empty() ? nullptr : still_.tree.data();
+  p.still_bounds = still_.bounds.data();
   p.contained = solids_ ? &findContained : nullptr;
   return p;
 }

@@ -74,18 +74,24 @@ class Setup {
   void buildObstacles(const Registry& registry);
   void allowScenePairs(const Registry& registry);
 
+  /// The obstacles that stand still.
+  struct StillObstacles {
+    std::vector<std::int32_t> bodies;
+    std::vector<engine::WideNode> tree;
+    std::vector<engine::StillBounds> bounds;
+    std::vector<std::uint8_t> allowed;  ///< empty when all pairs of link and obstacle are checked
+    std::int32_t num_allowed = 0;
+  };
+
   bool obb_trees_ = false;
   std::vector<FrameSweep> sweeps_;  ///< of the links first, then one from each moving obstacle
   std::vector<engine::SweepView> sweep_views_;
   std::vector<engine::Body> bodies_;  ///< as the registry's: links, moving obstacles, the others
-  std::vector<std::int32_t> movers_, obstacle_bodies_;
+  std::vector<std::int32_t> movers_;
   std::vector<engine::LinkPair> link_pairs_;  ///< of two links first, then of moving obstacles and links
   PairMovers link_movers_;
   std::size_t num_links_ = 0, num_link_sweeps_ = 0, num_self_pairs_ = 0;
-  std::vector<std::uint8_t> scene_allowed_;  ///< empty when all pairs of link and obstacle are checked
-  std::int32_t num_scene_allowed_ = 0;
-  std::vector<engine::WideNode> obstacle_tree_;
-  std::vector<engine::StillBounds> still_bounds_;
+  StillObstacles still_;
   std::vector<engine::BoundedSource> sources_;  ///< of moving obstacles' bounded motions
   Eigen::MatrixXd moving_coefficients_;
   PairMargins margins_, margins_of_neighbours_;

@@ -40,7 +40,7 @@ std::vector<Carrier> Setup::buildLinks(const Registry& registry) {
   sweeps_.clear();
   sweeps_.push_back(FrameSweep::fromWorld(*registry.tree()));
   bodies_.assign(links.size(), engine::Body());
-  // What shapes make of themselves when first asked is most of a set-up: made by all cores.
+  // Shapes compute some of their data when they are first asked. That is most of a set-up, so all cores do it here.
   parallelFor(links.size(), 0, [&](std::size_t i) {
     links[i].shape->viewWithParts();
     links[i].shape->innerBalls();
@@ -117,7 +117,7 @@ void Setup::buildSelfPairs(const Registry& registry, const std::vector<Carrier>&
     link_pairs_.push_back(pair);
   });
   num_link_sweeps_ = sweeps_.size();
-  // Large links first: they are the likeliest to touch, where any contact will do.
+  // Large links first: they are the likeliest to touch, which helps queries for any contact.
   const auto size = [&](const engine::LinkPair& pair) {
     const auto radius = [&](std::int32_t body) {
       return bodies_[static_cast<std::size_t>(body)].tree->nodes[0].radius;

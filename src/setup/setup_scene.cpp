@@ -18,7 +18,8 @@
 namespace fcl_artic {
 namespace {
 
-/// An obstacle as the engine sees it: cut into parts like the links, unless it is so large that they move amid it.
+/// An obstacle as the engine sees it: cut into parts like the links, unless it is so large that the links move within
+/// it.
 const engine::TreeView& viewOf(const ManagedBody& obstacle, const std::vector<ManagedBody>& links) {
   const bool large = std::all_of(links.begin(), links.end(),
                                  [&](const ManagedBody& link) { return 2 * link.size() < obstacle.size(); });
@@ -100,9 +101,9 @@ void Setup::buildObstacles(const Registry& registry) {
   const std::vector<ManagedBody>& obstacles = registry.obstacles();
   const std::size_t first = num_links_ + registry.moving().size();
   std::vector<BoxBounds> boxes(obstacles.size());
-  obstacle_bodies_.resize(obstacles.size());
-  still_bounds_.clear();
-  still_bounds_.reserve(obstacles.size());
+  still_.bodies.resize(obstacles.size());
+  still_.bounds.clear();
+  still_.bounds.reserve(obstacles.size());
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
     const ManagedBody& obstacle = obstacles[o];
     engine::Body& body = bodies_[first + o];
@@ -112,21 +113,21 @@ void Setup::buildObstacles(const Registry& registry) {
     obstacle.worldBox(obstacle.offset, body.placement, body.lo, body.hi);
     std::copy_n(body.lo, 3, boxes[o].lo);
     std::copy_n(body.hi, 3, boxes[o].hi);
-    obstacle_bodies_[o] = static_cast<std::int32_t>(first + o);
-    still_bounds_.push_back({body.inverse, obstacle.shape->coreBox(), body.tree, baseline::isSolid(*body.tree)});
+    still_.bodies[o] = static_cast<std::int32_t>(first + o);
+    still_.bounds.push_back({body.inverse, obstacle.shape->coreBox(), body.tree, baseline::isSolid(*body.tree)});
   }
-  obstacle_tree_ = widen(buildBoxTree(boxes));
+  still_.tree = widen(buildBoxTree(boxes));
 }
 
 /// Pairs of link and still obstacle that may touch, or cannot, or stand still against each other.
 void Setup::allowScenePairs(const Registry& registry) {
   const std::vector<ManagedBody>& obstacles = registry.obstacles();
-  scene_allowed_.clear();
-  num_scene_allowed_ = 0;
+  still_.allowed.clear();
+  still_.num_allowed = 0;
   const auto allow = [&](std::size_t m, std::size_t o) {
-    scene_allowed_.resize(num_links_ * obstacles.size(), 0);
-    std::uint8_t& allowed = scene_allowed_[m * obstacles.size() + o];
-    num_scene_allowed_ += !allowed;
+    still_.allowed.resize(num_links_ * obstacles.size(), 0);
+    std::uint8_t& allowed = still_.allowed[m * obstacles.size() + o];
+    still_.num_allowed += !allowed;
     allowed = 1;
   };
   const auto link = [&](std::size_t m) -> const ManagedBody& { return registry.body(movers_[m]); };

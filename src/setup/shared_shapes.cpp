@@ -17,13 +17,13 @@ struct Held {
   std::weak_ptr<const GeometryContent> content;
 };
 
-/// All that is held, by a number that equal meshes mostly have in common. (Nothing rests on it.)
+/// All shapes that are held, by a hash of their meshes. (No proof rests on the hash.)
 struct AllHeld {
   std::mutex mutex;
   std::unordered_multimap<std::uint64_t, Held> by_key;
-  std::size_t swept = 16;  ///< entries that were left when those that nobody holds were thrown out last, at least
+  std::size_t swept = 16;  ///< entries left after the last removal of those that nobody holds, at least
 
-  /// (What nobody holds is gone, but its entry would stay where no equal mesh is ever asked for again.)
+  /// (An entry whose mesh nobody holds would stay for ever if no equal mesh is asked for again.)
   void add(std::uint64_t key, const Held& one) {
     if (by_key.size() >= 2 * swept) {
       for (auto at = by_key.begin(); at != by_key.end();) {

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector3d;
 using RowMajor = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
 
-/// What is gained by another sweep, as a part of the distance: less is not worth it.
+/// Least gain of a further sweep that is worth its time, as a part of the distance.
 constexpr double kLeastGain = 0.01;
 
 /// A point after the step, as seen from before its motion.
@@ -32,7 +32,7 @@ Vector3d movedBack(const engine::SweepStep& step, double variable, const Vector3
   return moved(back, variable, x);
 }
 
-/// Where in the range a step brings b, after it, nearest to a, before it.
+/// The value in the range at which a step brings b (after the step) nearest to a (before it).
 double best(const engine::SweepStep& step, const ValueRange& within, const Vector3d& a, const Vector3d& b,
             double otherwise) {
   if (step.multiplier == 0) return otherwise;
@@ -73,7 +73,7 @@ double bringTogether(const std::vector<engine::SweepStep>& path, const std::vect
     x = b;
     for (std::size_t i = path.size(); i-- > 0;) {
       const auto v = static_cast<std::size_t>(path[i].variable);
-      // What a variable of several steps does is not known in closed form.
+      // For a variable of several steps no closed form is known.
       if (steps[v] == 1) values[v] = best(path[i], within[v], before[i], x, values[v]);
       x = RowMajor(path[i].C) * moved(path[i], values[v], x) + Vector3d::Map(path[i].p);
     }

@@ -107,13 +107,13 @@ std::shared_ptr<const ContactGrid> ContactGrid::build(const KinematicTree& tree,
     if (known == variables.end()) variables.push_back(step.variable);
   }
   std::reverse(path.steps.begin(), path.steps.end());
-  if (variables.empty() || variables.size() > kMostVariables) return nullptr;
+  if (variables.empty() || variables.size() > kMaxVariables) return nullptr;
   const auto grid = std::make_shared<ContactGrid>();
   Axes& axes = grid->axes_;
   axes.count = static_cast<int>(variables.size());
   axes.cells = kCells[axes.count - 1];
   std::copy(variables.begin(), variables.end(), axes.variables);
-  VariableRange ranges[kMostVariables];
+  VariableRange ranges[kMaxVariables];
   std::size_t count = 1;
   for (int i = 0; i < axes.count; ++i) {
     ranges[i] = VariableRange(tree, axes.variables[i]);
@@ -123,7 +123,7 @@ std::shared_ptr<const ContactGrid> ContactGrid::build(const KinematicTree& tree,
   grid->touching_.resize(count);
   const Balls a(*of_a), b(*of_b);
   for (std::size_t cell = 0; cell < count; ++cell) {
-    double q[kMostVariables];
+    double q[kMaxVariables];
     std::size_t rest = cell;
     for (int i = axes.count; i-- > 0; rest /= static_cast<std::size_t>(axes.cells)) {
       const double index = static_cast<double>(rest % static_cast<std::size_t>(axes.cells));

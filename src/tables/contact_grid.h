@@ -32,7 +32,7 @@ struct VariableRange {
 
 class ContactGrid {
  public:
-  static constexpr std::size_t kMostVariables = 3;
+  static constexpr std::size_t kMaxVariables = 3;
 
   /// For two links whose relative pose depends on three joint variables at most: whether balls inside both meet in the
   /// middle of each cell of the variables' ranges.
@@ -46,7 +46,7 @@ class ContactGrid {
 
   struct Axes {
     int count = 0, cells = 1;  ///< cells along each
-    int variables[kMostVariables];
+    int variables[kMaxVariables];
 
     /// @param parts  of each variable's range.
     std::size_t cell(const double* parts) const {

@@ -16,33 +16,49 @@
 namespace fcl_artic {
 namespace {
 
-/// Cells along the variable that the engine moves; and at most along the one that is paid for by a margin, where they
-/// are cut so fine that this margin is kRowMargin. Measured: 96 rows take three times as long for the UR5, whose base
-/// and upper arm pass each other at 16 mm.
-constexpr int kColumns = 96, kMostRows = 192;
+// The cells of a table and the work for them. A table has up to three axes, one for each variable, by how far the
+// variable takes the link, the farthest first. Along the first one (columns) the engine proves motions over many cells.
+// The second one (rows) and the third one (planes) stand in the middles of cells, and a margin pays for all other
+// values of these cells (doc/NUMERICS.md, Lemma 7). Any values are sound: cells that are not proven are looked at by
+// each query.
+
+/// Number of columns. More columns: less of the range around a contact counts as not proven, in more memory.
+constexpr int kColumns = 96;
+/// The margin, m, that pays for half a row; the number of rows follows from it, up to kMaxRows. A larger margin: fewer
+/// rows, which are proven sooner, and links that pass each other closely are not proven apart. Measured: the UR5, whose
+/// base and upper arm pass each other at 16 mm, takes three times as long with 96 rows at most.
 constexpr double kRowMargin = 0.002;
-/// A third variable (a gripper's fingers) has three cells, its range and as much below and above, where that takes no
-/// larger margin. (Fingers are held apart beyond their limits in more than one description of a scene.)
-constexpr double kMostMargin = 0.03;
+constexpr int kMaxRows = 192;
+/// A third variable, such as that of a gripper's fingers, has three planes: its range, and as much below and above.
+/// (More than one description of a scene holds fingers apart beyond their limits.) The margin that pays for half of its
+/// range may be this, m. If the variable needs more there is no table. A larger value: more tables, of which less is
+/// proven.
 constexpr int kPlanes = 3;
-// Of a plane's cells that are not proven, PairTable::free counts those in a box of at most one turn.
-static_assert(kColumns * kMostRows < 1 << 16);
-/// Cells are proven, and looked up, wider than they are by this part of their width: more than all rounding of joint
-/// values.
+constexpr double kMaxPlaneMargin = 0.03;
+/// PairTable::free() counts the cells of a box, one turn at most, that are not proven, in 16 bits.
+static_assert(kColumns * kMaxRows < 1 << 16);
+/// A cell is proven, and looked up, as if it were wider on either side by this part of its width. It must be more than
+/// all rounding of joint values, for which chooseCells() asks for 64 ulp of the largest one. A larger slack: motions
+/// that end near a cell's border need its neighbour, too.
 constexpr double kCellSlack = 1e-6;
-/// Tests of nodes and leaves for one box of cells; what needs more counts as not proven. Measured on the Panda and the
-/// UR5: 400 prove 0.6 % of the cells more in three times the time.
-constexpr std::uint64_t kWork = 60;
-/// A table of few rows, as that of a gripper's fingers, which one joint drives, has more for each: as many in all as
-/// kMostRows rows, and up to kMostTries times that where it takes several tries.
-constexpr std::uint64_t kMostTries = 4;
-/// Of a row's cells neither of whose ends is proven, fewer than these are not looked into; in tables of few rows, fewer
-/// than so many a row.
-constexpr int kIsland = 40, kIslandOfRow = 4;
+
+/// The work that one motion over cells may take, in tests of nodes and leaves. Cells that take more count as not
+/// proven. Measured on the Panda and the UR5: with 400 0.6 % more cells are proven, in three times the time.
+constexpr std::uint64_t kMotionWork = 60;
+/// The motions of a table of few rows share the work of kMaxRows motions. (The table of a gripper's fingers, which one
+/// joint drives, has one row.) All motions together may take this many times that, beyond kMotionWork for each. Larger:
+/// more cells of such tables are proven, in more time.
+constexpr std::uint64_t kMaxTries = 4;
+/// A row whose ends are not proven is searched from the middle of what is left, until fewer cells than this are. In a
+/// table of few rows it is this number of cells for each of its rows. Smaller: shorter stretches of free cells between
+/// contacts are found, in more time.
+constexpr int kMinIsland = 40, kMinIslandPerRow = 4;
+/// The tolerances of the engine's answers: as part of the motion, and m. The first one leaves up to 1/64 of a motion's
+/// cells before a contact unproven.
 constexpr double kToleranceTime = 1.0 / 64, kToleranceDistance = 1e-4;
 
-/// What is proven of cells [begin, end) of an axis holds for values in here.
-struct Range {
+/// The values for which a proof of some cells of an axis holds.
+struct CellRange {
   double lower = 0, upper = 0;
 
   double middle() const { return 0.5 * (lower + upper); }
@@ -52,12 +68,12 @@ struct Range {
 /// Values that variables take together, a range each.
 class Box {
  public:
-  void set(int variable, const Range& range) {
+  void set(int variable, const CellRange& range) {
     variables_[count_] = variable;
     ranges_[count_++] = range;
   }
   /// Largest absolute value of a variable; none is known of one that is not in the box.
-  double most(int variable) const {
+  double maxAbsolute(int variable) const {
     for (int i = 0; i < count_; ++i) {
       if (variables_[i] == variable) return std::max(std::abs(ranges_[i].lower), std::abs(ranges_[i].upper));
     }
@@ -66,7 +82,7 @@ class Box {
 
  private:
   int count_ = 0, variables_[3] = {};
-  Range ranges_[3];
+  CellRange ranges_[3];
 };
 
 }  // namespace
@@ -82,7 +98,7 @@ struct PairTable::Links {
   /// the box: the s of Lemma 7 (doc/NUMERICS.md). It holds in this box only.
   double lever(int variable, const Box& box) const {
     const double of_b = reachPerUnit(sweep, pair.step_b, pair.placement_b, *bodies[pair.b].tree, variable,
-                                     [&](int v) { return box.most(v); });
+                                     [&](int v) { return box.maxAbsolute(v); });
     const bool first_only = std::all_of(path.begin(), path.end(), [&](const engine::SweepStep& step) {
       return (step.variable == variable) == (&step == path.data());
     });
@@ -116,9 +132,9 @@ class PairTable::Builder {
     query_.check_scene = false;
     query_.describe_contacts = false;
     const int rows = paid_.cells * cells.axes[2].cells;
-    work_ = std::max(kWork, kWork * kMostRows / static_cast<std::uint64_t>(rows));
-    work_left_ = kMostTries * kWork * kMostRows;
-    island_ = std::min(kIsland, kIslandOfRow * rows);
+    motion_work_ = std::max(kMotionWork, kMotionWork * kMaxRows / static_cast<std::uint64_t>(rows));
+    work_left_ = kMaxTries * kMotionWork * kMaxRows;
+    min_island_ = std::min(kMinIsland, kMinIslandPerRow * rows);
     query_.tolerance_time = kToleranceTime;
     query_.tolerance_distance = kToleranceDistance;
   }
@@ -131,11 +147,11 @@ class PairTable::Builder {
   }
 
  private:
-  /// Lemma 7: all variables but the first one stand in the middle of their cells, rows [j, j_end) of the plane, and the
+  /// Lemma 7: all variables but the first one stand in the middle of their cells, rows [j, j_end) of the plane. The
   /// margin pays for the way from there to all other values in these cells. The levers are those of this very box.
-  void standInTheMiddle(int j, int j_end) {
+  void fixRows(int j, int j_end) {
     const int begin[3] = {0, j, plane_}, end[3] = {moved_.cells, j_end, plane_ + 1};
-    Range ranges[3];
+    CellRange ranges[3];
     Box box;
     for (int a = 0; a < cells_.count; ++a) {
       const Axis& axis = cells_.axes[a];
@@ -153,7 +169,7 @@ class PairTable::Builder {
 
   /// Rows [j, j_end) together, else in halves, else one row in parts.
   void proveRows(int j, int j_end) {
-    standInTheMiddle(j, j_end);
+    fixRows(j, j_end);
     if (j_end - j == 1) return proveRow(j, 0, moved_.cells);
     query_.any = true;
     if (provenFrom(0, moved_.cells) == moved_.cells) {
@@ -175,7 +191,7 @@ class PairTable::Builder {
     mark(j, i_end - from_end, i_end);
     i += from_begin;
     i_end -= from_end;
-    if (i_end - i < island_) return;
+    if (i_end - i < min_island_) return;
     const int middle = (i + i_end) / 2;
     proveRow(j, i, middle);
     proveRow(j, middle, i_end);
@@ -195,7 +211,7 @@ class PairTable::Builder {
       variables_(0, 0) = from;
       variables_(0, 1) = moved_.lower + (end + slack) * moved_.width - from;
     }
-    query_.work_budget = std::max(kWork, std::min(work_, work_left_));
+    query_.work_budget = std::max(kMotionWork, std::min(motion_work_, work_left_));
     engine::Answer answer;
     workspace_.solve(problem_, query_, answer);
     work_left_ -= std::min(work_left_, answer.statistics.node_tests + answer.statistics.leaf_tests);
@@ -217,9 +233,10 @@ class PairTable::Builder {
   engine::Problem problem_;
   engine::Query query_;
   engine::EngineWorkspace workspace_;
-  std::uint64_t work_ = 0, work_left_ = 0;  ///< tests for one box of cells; and for all, beyond kWork for each
-  int island_ = 0;                          ///< fewest cells that are looked into
-  int plane_ = 0;                           ///< cell of the third axis
+  std::uint64_t motion_work_ = 0;  ///< tests for one motion
+  std::uint64_t work_left_ = 0;    ///< tests for all motions, beyond kMotionWork for each
+  int min_island_ = 0;             ///< fewest cells that are looked into
+  int plane_ = 0;                  ///< cell of the third axis
   std::vector<std::uint8_t> proven_;
 };
 
@@ -247,7 +264,7 @@ std::optional<const PairTable::Cells> PairTable::chooseCells(const KinematicTree
   Axis* const axes = cells.axes;
   for (const engine::SweepStep& step : path) {
     if (step.kind != engine::StepKind::revolute && step.kind != engine::StepKind::prismatic) return std::nullopt;
-    if (!(std::abs(step.multiplier) <= kMostValue && std::abs(step.offset) <= kMostValue)) return std::nullopt;
+    if (!(std::abs(step.multiplier) <= kMaxValue && std::abs(step.offset) <= kMaxValue)) return std::nullopt;
     if (std::any_of(axes, axes + cells.count, [&](const Axis& a) { return a.variable == step.variable; })) continue;
     if (cells.count == 3) return std::nullopt;
     axes[cells.count++].variable = step.variable;
@@ -265,7 +282,7 @@ std::optional<const PairTable::Cells> PairTable::chooseCells(const KinematicTree
              (step.kind == engine::StepKind::revolute && step.multiplier == std::round(step.multiplier));
     });
     const Joint& joint = tree.joint(tree.variableJoint(axis.variable));
-    const bool limited = hasLimits(joint) && std::max(std::abs(joint.lower), std::abs(joint.upper)) <= kMostValue;
+    const bool limited = hasLimits(joint) && std::max(std::abs(joint.lower), std::abs(joint.upper)) <= kMaxValue;
     axis.wraps = whole_turns && !(limited && joint.upper - joint.lower < kTwoPi);
     if (!axis.wraps && !limited) return std::nullopt;
     const double limits = axis.wraps ? kTwoPi : joint.upper - joint.lower;
@@ -282,14 +299,14 @@ std::optional<const PairTable::Cells> PairTable::chooseCells(const KinematicTree
     const auto& [axis, range, margin] = guesses[static_cast<std::size_t>(a)];
     axes[a] = axis;
     if (a == 2) {
-      if (axis.wraps || margin > kMostMargin) return std::nullopt;
+      if (axis.wraps || margin > kMaxPlaneMargin) return std::nullopt;
       axes[a].cells = kPlanes;
       constexpr int kPlanesBelow = (kPlanes - 1) / 2;
       axes[a].lower -= kPlanesBelow * range;
       axes[a].width = range;
     } else {
       axes[a].cells =
-          a == 0 ? kColumns : static_cast<int>(std::clamp(std::ceil(margin / kRowMargin), 1.0, 1.0 * kMostRows));
+          a == 0 ? kColumns : static_cast<int>(std::clamp(std::ceil(margin / kRowMargin), 1.0, 1.0 * kMaxRows));
       axes[a].width = range / axes[a].cells;
     }
     // Rounding of values near the cells' is far below the slack.

@@ -8,27 +8,17 @@
 #include <cstdint>
 #include <vector>
 
-#include "fcl_artic/kinematic_tree.h"
-#include "model/problem.h"
+#include "model/answer.h"
+#include "model/query.h"
 #include "narrowphase/engine_workspace.h"
-#include "tables/value_range.h"
+#include "tables/link_chain.h"
 
 namespace fcl_artic {
 
-/// The values of a variable, as far as proofs for its whole range go. These are its limits and a little more, as
-/// joints may stand at them; all values, where an angle has no limits. Nothing (lower > upper) for a variable without
-/// bounds: a slide without limits, the variables of planar and floating joints.
-ValueRange wholeRange(const KinematicTree& tree, int variable);
-
-/// Two links and the joint variables between them.
+/// The search over boxes of joint values, of two links.
 class RangeProof {
  public:
-  /// Steps at both ends of the path that are replaced, together with the links they carry, by a ball about the joint
-  /// next to them. It holds the link for all values of these steps' variables (Lemma 10). Without them there is less to
-  /// prove: fewer variables, of bodies that are larger.
-  struct Cut {
-    std::size_t of_a, of_b;
-  };
+  using Cut = LinkChain::Cut;
 
   /// @param problem, pair  must stay as they are as long as this lives.
   /// @param margin  m, that the links are proven to keep.
@@ -39,13 +29,10 @@ class RangeProof {
   RangeProof(const RangeProof&) = delete;
   RangeProof& operator=(const RangeProof&) = delete;
 
-  /// Whether the ranges of all variables between the links are bounded, and their joints turn about or slide along an
-  /// axis. If not, nothing can be proven.
-  bool bounded() const { return bounded_; }
-  /// The variables between the links, each once, from the first link on.
-  const std::vector<int>& variables() const { return variables_; }
-  /// Cuts that leave less to prove, the fewest variables first; none where a mesh is a solid.
-  std::vector<Cut> cuts() const;
+  // As LinkChain's.
+  bool bounded() const { return chain_.bounded(); }
+  const std::vector<int>& variables() const { return chain_.variables(); }
+  std::vector<Cut> cuts() const { return chain_.cuts(); }
 
   /// The certain state of the links where the variables have given values.
   enum class Contact : std::uint8_t {
@@ -64,39 +51,32 @@ class RangeProof {
   /// more than the margin; infinite, where none is known.
   double comeNearer(const std::vector<ValueRange>& within, double margin, std::vector<double>& values);
 
-  struct Finding {
+  struct Result {
     bool apart = false;          ///< proven, for all values in the ranges
     std::uint64_t work = 0;      ///< tests of nodes and leaves, and kQueryWork for each query
     std::vector<double> values;  ///< not apart: where the proof failed, a value of each variable
   };
   /// Proves the links apart over the whole ranges, with `work` at most; or gives up.
-  Finding prove(std::uint64_t work);
+  Result prove(std::uint64_t work);
 
   /// Work of a query before its first test, in tests of nodes and leaves.
   static constexpr std::uint64_t kQueryWork = 40;
 
  private:
-  /// Points about a body and, of the last two, a radius. The body lies in the hull of the first eight, and in the hull
-  /// of the last two grown by the radius.
-  struct Outline {
-    Eigen::Matrix<double, 3, 10> points;
-    double radius;
-  };
   /// Ranges of all variables between the links. A proof of a box is one for all values in it.
   using Box = std::vector<ValueRange>;
-  /// The outcome of trying a box.
-  struct Tried {
+  struct BoxResult {
     bool apart = false, give_up = false, out_of_work = false;
     std::size_t split = 0;      ///< else: the variable to halve
     std::vector<double> where;  ///< not apart: where on the engine's way, if it was asked
   };
 
   /// A step's own motion, along and about z: of points after it, as seen from before it.
-  struct Joint {
+  struct StepPose {
     double sine = 0, cosine = 1, slide = 0;
 
     void set(const engine::SweepStep& step, double variable);
-    Joint inverse() const { return {-sine, cosine, -slide}; }
+    StepPose inverse() const { return {-sine, cosine, -slide}; }
     template <class Points>
     void apply(Points& points) const;
   };
@@ -109,44 +89,29 @@ class RangeProof {
     double distance;         ///< of the two, there, less the balls' radii
   };
 
-  static Outline outlineOf(const engine::Body& body);
-  static double farthestFromAxis(const Outline& outline);
-  static double farthestFromOrigin(const Outline& outline);
-  void standIn(const Cut& cut);
-  double mostOf(const engine::SweepStep& step) const;
-  void measureWays(const Box& box);
-  Tried tryBox(const Box& box, std::uint64_t work);
+  void boundDisplacements(const Box& box);
+  BoxResult tryBox(const Box& box, std::uint64_t work);
   void solve();
   /// The value of a variable in the motion asked last.
   double valueAt(std::size_t variable, double t) const {
-    return coefficients_[variable] + t * coefficients_[variables_.size() + variable];
+    return coefficients_[variable] + t * coefficients_[variables().size() + variable];
   }
   bool findWitness(Witness& witness);
   void addWitness();
-  bool mustFail(const Box& box, std::size_t moved, double margin) const;
+  bool likelyFails(const Box& box, std::size_t moved, double margin) const;
 
   engine::EngineWorkspace& workspace_;
-  std::vector<engine::SweepStep> path_;  ///< from the first link on; the variables are numbers among variables_
-  engine::SweepView sweep_;
-  engine::LinkPair pair_;
-  engine::Problem problem_;
-  engine::Body bodies_[2];  ///< where a ball stands for one of them: the problem's
+  const LinkChain chain_;
+  const double margin_;
   engine::Query query_;
   engine::Answer answer_;
-  std::vector<int> variables_;
-  std::vector<int> steps_of_;  ///< by variable: how many steps it drives
-  Box whole_;
-  bool bounded_ = true;
-  double margin_, pad_ = 0;
-  double balls_ = 0;           ///< radii of both balls that stand for links; the bodies are their middles
-  Outline of_a_, of_b_;        ///< in the base frame, and in the last step's
-  std::vector<Joint> middle_;  ///< per step, of the box measured last: where it stands in the middle
-  /// Per step, of the box measured last: how far a point goes at most when the step leaves the middle of its range.
-  /// One is of A as seen from B, one of B as seen from A.
-  std::vector<double> way_of_a_, way_of_b_;
-  std::vector<double> coefficients_;
-  std::uint64_t work_ = 0;
-  static constexpr std::size_t kMostWitnesses = 8;
+  std::vector<double> coefficients_;    ///< of the motion asked for
+  std::uint64_t work_ = 0;              ///< so far, as Result::work
+  std::vector<StepPose> middle_poses_;  ///< by step: in the middle of the box measured last
+  /// By step, of the box measured last, m: how far a point goes at most when the step leaves the middle of its range.
+  /// One is of points of A as seen from B, one of B as seen from A.
+  std::vector<double> displacement_a_, displacement_b_;
+  static constexpr std::size_t kMaxWitnesses = 8;  ///< the newest are kept
   std::vector<Witness> witnesses_;
   std::size_t next_witness_ = 0;
 };

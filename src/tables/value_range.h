@@ -7,7 +7,7 @@ namespace fcl_artic {
 constexpr double kBeyondLimits = 1e-3;
 /// Tables and proofs leave out joints with values, or mimic joints with multipliers or offsets, beyond this (rad or m):
 /// their pads are derived for smaller ones.
-constexpr double kMostValue = 100;
+constexpr double kMaxValue = 100;
 
 /// Values of a joint variable, both ends included. Any value is meant where they are infinite.
 struct ValueRange {

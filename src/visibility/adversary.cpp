@@ -62,6 +62,30 @@ Volume addVolume(const Vector3d* points, int n, double radius, Batch& batch) {
   return volume;
 }
 
+/// The box of what is swept, made larger by something, off the grid; or cut near the touching point.
+/// @param cut_near  this point; null: it is not cut.
+Window windowAround(const std::vector<Vector3d>& swept, double radius, const Vector3d* cut_near,
+                    AdversaryRandom& random) {
+  Window window;
+  for (int k = 0; k < 3; ++k) {
+    double lo = swept[0][k], hi = lo;
+    for (const Vector3d& x : swept) {
+      lo = std::min(lo, x[k]);
+      hi = std::max(hi, x[k]);
+    }
+    lo -= radius;
+    hi += radius;
+    if (cut_near) {
+      lo = std::max(lo, (*cut_near)[k] - random.logUniform(1e-4, 1));
+      hi = std::min(hi, (*cut_near)[k] + random.logUniform(1e-4, 1));
+    }
+    const double part = random.uniform(), room = random.uniform() < 0.3 ? 1e-3 : std::max(1 - (hi - lo), 1e-6);
+    window.lo[k] = lo - room * part - 1e-9;
+    window.hi[k] = hi + room * (1 - part) + 1e-9;
+  }
+  return window;
+}
+
 }  // namespace
 
 double AdversaryRandom::logUniform(double lo, double hi) {
@@ -129,27 +153,10 @@ void addAdversary(std::uint64_t seed, std::uint64_t i, double gap, Batch& batch)
   }
   for (int k = 0; k < object_count; ++k) object[k] += on_swept - on_object;
 
-  // The box of what is swept, made larger by something, off the grid; or cut near the touching point.
-  Window window;
   const bool cut = random.uniform() < 0.2 && gap == 0;
-  for (int k = 0; k < 3; ++k) {
-    double lo = swept[0][k], hi = lo;
-    for (int j = 1; j < swept_count; ++j) {
-      lo = std::min(lo, swept[j][k]);
-      hi = std::max(hi, swept[j][k]);
-    }
-    lo -= radius;
-    hi += radius;
-    if (cut) {
-      lo = std::max(lo, on_swept[k] - random.logUniform(1e-4, 1));
-      hi = std::min(hi, on_swept[k] + random.logUniform(1e-4, 1));
-    }
-    const double part = random.uniform(), room = random.uniform() < 0.3 ? 1e-3 : std::max(1 - (hi - lo), 1e-6);
-    window.lo[k] = lo - room * part - 1e-9;
-    window.hi[k] = hi + room * (1 - part) + 1e-9;
-  }
   const auto w = static_cast<std::int32_t>(batch.windows.size());
-  batch.windows.push_back(window);
+  batch.windows.push_back(
+      windowAround(std::vector<Vector3d>(swept, swept + swept_count), radius, cut ? &on_swept : nullptr, random));
   batch.swept.push_back({addVolume(swept, swept_count, radius, batch), w});
   batch.objects.push_back({addVolume(object, object_count, 0, batch), w, batch.num_groups++});
 }

@@ -33,7 +33,7 @@ struct Growth {
 
 /// Swept volumes and the objects that may touch them, by windows.
 struct Batch {
-  struct Swept {
+  struct SweptVolume {
     Volume volume;
     std::int32_t window;
   };
@@ -51,7 +51,7 @@ struct Batch {
   /// A point that a swept volume of a window and an object of this window share lies in the window, or the window is
   /// wrong.
   std::vector<Window> windows;
-  std::vector<Swept> swept;
+  std::vector<SweptVolume> swept;
   std::vector<Object> objects;  ///< those of a group lie together and share a window; groups are numbered from 0
   std::int32_t num_groups = 0;
 

@@ -11,7 +11,7 @@ namespace {
 constexpr float kNothing = 3e38f;
 /// Growth::eta of this executor: nothing is snapped, and rounding is far less.
 constexpr double kEta = 1.0 / 64;
-/// A side flatter than this decides no column of a row: as if it were not there (or the row as a whole is beyond it).
+/// A side flatter than this cuts no column off a row. It is ignored, unless the row as a whole is beyond it.
 constexpr double kFlat = 1e-6;
 
 /// Ends of a footprint in one row of pixels; empty where begin > end. The rounding of this is some 1e-8 pixels, which
@@ -20,7 +20,7 @@ void rowEnds(const Footprint& f, int row, int& begin, int& end) {
   const double y = row + 0.5;
   double x0 = f.x0, x1 = f.x1;
   for (int s = 0; s < f.num_sides; ++s) {
-    const Side& side = f.sides[s];
+    const HalfPlane& side = f.sides[s];
     const double room = side.c - side.b * y;
     if (side.a > kFlat) {
       x1 = std::min(x1, room / side.a - 0.5);
@@ -62,7 +62,7 @@ void CpuExecutor::drawSwept(const Batch& batch) {
   tile_farthest_.assign(tiles, -kNothing);
   unusable_.assign(batch.windows.size(), 0);
   float lower[kLargestResolution], upper[kLargestResolution];
-  for (const Batch::Swept& swept : batch.swept) {
+  for (const Batch::SweptVolume& swept : batch.swept) {
     const auto w = static_cast<std::size_t>(swept.window);
     for (int view = 0; view < kViews; ++view) {
       const auto outcome = projector_.project(batch, swept.volume, batch.windows[w], view, footprint_);
@@ -89,13 +89,14 @@ void CpuExecutor::drawSwept(const Batch& batch) {
   }
 }
 
-CpuExecutor::Seen CpuExecutor::look(const Batch& batch, const Footprint& f, int window, int view) const {
-  Seen seen;
+CpuExecutor::DepthFindings CpuExecutor::compareDepths(const Batch& batch, const Footprint& f, int window,
+                                                      int view) const {
+  DepthFindings findings;
   const std::size_t index = static_cast<std::size_t>(kViews * window + view);
   const bool intervals = batch.rule == VisibilityRule::intervals;
   // As a whole before or behind all of the swept volumes.
   if (intervals && !(f.bounds[0].upper >= tile_nearest_[index] && f.bounds[0].lower <= tile_farthest_[index]))
-    return seen;
+    return findings;
   const std::size_t tile = tileBegin(batch, window, view), side = static_cast<std::size_t>(batch.resolution);
   float lower[kLargestResolution], upper[kLargestResolution];
   for (int row = f.y0; row <= f.y1; ++row) {
@@ -113,12 +114,12 @@ CpuExecutor::Seen CpuExecutor::look(const Batch& batch, const Footprint& f, int 
       not_behind |= begins;
       between |= reaches & begins;
     }
-    seen.not_in_front |= not_in_front != 0;
-    seen.not_behind |= not_behind != 0;
-    seen.between |= between != 0;
-    if (seen.between) return {true, true, true};
+    findings.not_in_front |= not_in_front != 0;
+    findings.not_behind |= not_behind != 0;
+    findings.between |= between != 0;
+    if (findings.between) return {true, true, true};
   }
-  return seen;
+  return findings;
 }
 
 bool CpuExecutor::mayOverlap(const Batch& batch, const Batch::Object& object) {
@@ -126,7 +127,8 @@ bool CpuExecutor::mayOverlap(const Batch& batch, const Batch::Object& object) {
   for (int view = 0; view < kViews; ++view) {
     const auto outcome = projector_.project(batch, object.volume, window, view, footprint_);
     if (outcome == Projector::Outcome::unusable) return true;
-    if (outcome == Projector::Outcome::misses || !look(batch, footprint_, object.window, view).between) return false;
+    if (outcome == Projector::Outcome::misses || !compareDepths(batch, footprint_, object.window, view).between)
+      return false;
   }
   return true;
 }
@@ -134,16 +136,16 @@ bool CpuExecutor::mayOverlap(const Batch& batch, const Batch::Object& object) {
 /// CULLIDE's rule: the whole group in front of the swept volumes, or behind them, in some view.
 bool CpuExecutor::groupMayOverlap(const Batch& batch, std::size_t begin, std::size_t end) {
   for (int view = 0; view < kViews; ++view) {
-    Seen all;
+    DepthFindings all;
     for (std::size_t i = begin; i < end && !all.all(); ++i) {
       const Batch::Object& object = batch.objects[i];
       const auto outcome = projector_.project(batch, object.volume,
                                               batch.windows[static_cast<std::size_t>(object.window)], view, footprint_);
       if (outcome == Projector::Outcome::unusable) return true;
       if (outcome == Projector::Outcome::misses) continue;
-      const Seen seen = look(batch, footprint_, object.window, view);
-      all.not_in_front |= seen.not_in_front;
-      all.not_behind |= seen.not_behind;
+      const DepthFindings findings = compareDepths(batch, footprint_, object.window, view);
+      all.not_in_front |= findings.not_in_front;
+      all.not_behind |= findings.not_behind;
     }
     if (!all.not_in_front || !all.not_behind) return false;
   }

@@ -17,12 +17,12 @@ class FCL_ARTIC_EXPORT CpuExecutor : public Executor {
 
  private:
   /// The findings of an object's fragments: some is not in front of the swept volumes, some not behind, some neither.
-  struct Seen {
+  struct DepthFindings {
     bool not_in_front = false, not_behind = false, between = false;
     bool all() const { return not_in_front && not_behind && between; }
   };
   void drawSwept(const Batch& batch);
-  Seen look(const Batch& batch, const Footprint& footprint, int window, int view) const;
+  DepthFindings compareDepths(const Batch& batch, const Footprint& footprint, int window, int view) const;
   bool mayOverlap(const Batch& batch, const Batch::Object& object);
   bool groupMayOverlap(const Batch& batch, std::size_t begin, std::size_t end);
   std::size_t tileBegin(const Batch& batch, int window, int view) const {

@@ -34,8 +34,8 @@ struct VisibilityCuller::Impl {
 namespace visibility {
 namespace {
 
-/// Pairs of the self-test: of each kind a hundred or two, which shows a broken executor, not a missing snapping margin.
-/// That one is set by its argument.
+/// Number of pairs in the self-test, a hundred or two of each kind. It finds a broken executor, but no missing margin
+/// for snapping: that margin rests on its derivation.
 constexpr std::uint64_t kSelfTestPairs = 1024;
 
 void requireSoundness(Executor& executor, Slot& slot, const VisibilityOptions& options) {
@@ -65,8 +65,8 @@ std::unique_ptr<Slot> ExecutorLoan::takeIdle(bool own) {
   return nullptr;
 }
 
-ExecutorLoan::ExecutorLoan(const VisibilityCuller& culler, Way way) : culler_(*culler.impl_) {
-  const bool own = way == Way::own && culler_.useFactory();
+ExecutorLoan::ExecutorLoan(const VisibilityCuller& culler, ExecutorKind kind) : culler_(*culler.impl_) {
+  const bool own = kind == ExecutorKind::own && culler_.useFactory();
   slot_ = takeIdle(own);
   if (slot_) return;
   made_ = true;

@@ -26,8 +26,8 @@ struct Slot {
 /// cpu.
 class ExecutorLoan {
  public:
-  /// @param way  cpu: that executor whatever the culler's own one is.
-  explicit ExecutorLoan(const VisibilityCuller& culler, Way way = Way::own);
+  /// @param kind  cpu: that executor whatever the culler's own one is.
+  explicit ExecutorLoan(const VisibilityCuller& culler, ExecutorKind kind = ExecutorKind::own);
   ~ExecutorLoan();
   ExecutorLoan(const ExecutorLoan&) = delete;
   ExecutorLoan& operator=(const ExecutorLoan&) = delete;

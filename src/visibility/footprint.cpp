@@ -9,9 +9,9 @@ namespace fcl_artic {
 namespace visibility {
 namespace {
 
-/// Of a handful of roundings in double, in any rounding mode; and of five in float.
+/// Bounds on a handful of roundings in double, in any rounding mode, and on five in float.
 constexpr double kDouble = 0x1p-48, kFloat = 0x1p-20;
-/// Beyond this nothing is computed: products of three such numbers are still finite.
+/// Nothing is computed with numbers above this: products of three such numbers are still finite.
 constexpr double kLargest = 1e24;
 /// Steeper bounds, in windows per pixel, bound nothing.
 constexpr double kSteepest = 4;
@@ -36,7 +36,7 @@ float up(double x) {
 
 /// Support of the volume, the pixel's square and the margin along (a, b).
 void Projector::addSide(double a, double b, Footprint& f) const {
-  if (f.num_sides == Footprint::kMostSides) return;  // a side less: a larger footprint
+  if (f.num_sides == Footprint::kMaxSides) return;  // a side less: a larger footprint
   double c = a * x_[0] + b * y_[0];
   for (int i = 1; i < count_; ++i) c = std::max(c, a * x_[i] + b * y_[i]);
   const double ra = a * radius_[0], rb = b * radius_[1];
@@ -48,7 +48,7 @@ void Projector::addSide(double a, double b, Footprint& f) const {
 void Projector::addBounds(double a, double b, Footprint& f) const {
   a = static_cast<float>(a);
   b = static_cast<float>(b);
-  if (f.num_bounds == Footprint::kMostBounds || !(std::abs(a) <= kSteepest && std::abs(b) <= kSteepest)) return;
+  if (f.num_bounds == Footprint::kMaxBounds || !(std::abs(a) <= kSteepest && std::abs(b) <= kSteepest)) return;
   double lower = z_[0] - a * x_[0] - b * y_[0], upper = lower;
   for (int i = 1; i < count_; ++i) {
     const double t = z_[i] - a * x_[i] - b * y_[i];
@@ -67,8 +67,8 @@ void Projector::addBounds(double a, double b, Footprint& f) const {
                               up(upper + evaluation + kFloat * std::abs(upper))};
 }
 
-/// Slopes worth trying: those of the plane through three far points, and, for what is round, those along the longest
-/// edge and tilted about it.
+/// Adds the slopes that are worth trying: those of the plane through three far points and, for round volumes, those
+/// along the longest edge and tilted about it.
 void Projector::addSlopes(Footprint& f) const {
   addBounds(0, 0, f);
   if (count_ < 2) return;
@@ -179,7 +179,7 @@ Projector::Outcome Projector::project(const Batch& batch, const Volume& volume, 
 }
 
 int clipToTile(const Footprint& f, int resolution, double (*polygon)[2]) {
-  double other[kMostCorners][2], (*from)[2] = polygon, (*to)[2] = other;
+  double other[kMaxCorners][2], (*from)[2] = polygon, (*to)[2] = other;
   const double x0 = std::max(f.lo[0], 0.0), x1 = std::min(f.hi[0], static_cast<double>(resolution));
   const double y0 = std::max(f.lo[1], 0.0), y1 = std::min(f.hi[1], static_cast<double>(resolution));
   const double box[4][2] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
@@ -189,7 +189,7 @@ int clipToTile(const Footprint& f, int resolution, double (*polygon)[2]) {
   }
   int n = 4;
   for (int s = 0; s < f.num_sides && n; ++s) {
-    const Side& side = f.sides[s];
+    const HalfPlane& side = f.sides[s];
     const auto inside = [&](const double* p) { return side.a * p[0] + side.b * p[1] <= side.c; };
     int crossings = 0, kept = 0;
     for (int i = 0; i < n; ++i) crossings += inside(from[i]) != inside(from[(i + 1) % n]);

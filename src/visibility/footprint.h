@@ -16,7 +16,7 @@ namespace fcl_artic {
 namespace visibility {
 
 /// a X + b Y <= c, with (a, b) of length 1 or so.
-struct Side {
+struct HalfPlane {
   double a, b, c;
 };
 
@@ -28,12 +28,12 @@ struct DepthBounds {
 
 /// The convex region that holds the centre of every pixel whose square the volume meets, by eta inside.
 struct Footprint {
-  static constexpr int kMostSides = 20, kMostBounds = 7;
+  static constexpr int kMaxSides = 20, kMaxBounds = 7;
   int x0, x1, y0, y1;   ///< pixels, ends included; at least one
   double lo[2], hi[2];  ///< the same box, not rounded to pixels
   int num_sides, num_bounds;
-  Side sides[kMostSides];
-  DepthBounds bounds[kMostBounds];  ///< the first one has a = b = 0
+  HalfPlane sides[kMaxSides];
+  DepthBounds bounds[kMaxBounds];  ///< the first one has a = b = 0
 };
 
 /// Makes footprints. One serves one thread.
@@ -68,7 +68,7 @@ class FCL_ARTIC_EXPORT Projector {
 /// @param[out] polygon  x, y of each corner.
 /// @return number of corners; 0 when nothing of it is left.
 FCL_ARTIC_EXPORT int clipToTile(const Footprint& footprint, int resolution, double (*polygon)[2]);
-constexpr int kMostCorners = Footprint::kMostSides + 8;
+constexpr int kMaxCorners = Footprint::kMaxSides + 8;
 
 }  // namespace visibility
 }  // namespace fcl_artic

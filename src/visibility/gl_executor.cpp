@@ -67,7 +67,7 @@ GlExecutor::GlExecutor(std::unique_ptr<OffscreenContext> context) : context_(std
   requireNoError("set-up");
 }
 
-GlExecutor::~GlExecutor() = default;  // the context takes all that it has with it
+GlExecutor::~GlExecutor() = default;  // with the context all of its objects go
 
 void GlExecutor::requireNoError(const char* what) const {
   const GLenum error = gl_->GetError();
@@ -123,7 +123,7 @@ void GlExecutor::resizeAtlas(int columns, int rows, int resolution) {
 /// Adds the footprint's polygon as a fan of triangles.
 void GlExecutor::place(const Batch& batch, const Footprint& f, int tile, std::uint32_t id,
                        std::vector<Vertex>& vertices) const {
-  double polygon[kMostCorners][2];
+  double polygon[kMaxCorners][2];
   const int n = clipToTile(f, batch.resolution, polygon);
   // Flat bounds and the tightest of the others.
   int best = 0;
@@ -159,7 +159,7 @@ void GlExecutor::draw(GLuint program, const std::vector<Vertex>& vertices) const
   gl_->DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(vertices.size()));
 }
 
-/// flags[3 * object + view] = 1 where some fragment counts.
+/// Sets flags[3 * object + view] to 1 if some fragment counts.
 void GlExecutor::markIntervals(std::vector<std::uint32_t>& flags) {
   const GlFunctions& gl = *gl_;
   const GLfloat nothing[4] = {kNothing, kNothing, 0, 0};
@@ -182,8 +182,8 @@ void GlExecutor::markIntervals(std::vector<std::uint32_t>& flags) {
   gl.GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, bytes, flags.data());
 }
 
-/// flags[3 * group + view] = 1 where the group is seen neither wholly in front of the swept volumes nor wholly behind.
-/// Compares are inclusive, quantisation and clamping monotone: what is not in front stays so.
+/// Sets flags[3 * group + view] to 1 if the group is seen neither wholly in front of the swept volumes nor wholly after
+/// them. Compares are inclusive, quantisation and clamping monotone: so a group that is not in front stays so.
 void GlExecutor::askQueries(std::vector<std::uint32_t>& flags) {
   const GlFunctions& gl = *gl_;
   const std::size_t n = ranges_.size();
@@ -227,7 +227,7 @@ void GlExecutor::runWindows(const Batch& batch, std::int32_t begin, std::int32_t
   ranges_.clear();
   std::vector<std::uint8_t> unusable(static_cast<std::size_t>(end - begin), 0);
   const auto within = [&](std::int32_t window) { return begin <= window && window < end; };
-  for (const Batch::Swept& swept : batch.swept) {
+  for (const Batch::SweptVolume& swept : batch.swept) {
     if (!within(swept.window)) continue;
     for (int view = 0; view < kViews; ++view) {
       const auto outcome = projector_.project(batch, swept.volume,
@@ -237,7 +237,7 @@ void GlExecutor::runWindows(const Batch& batch, std::int32_t begin, std::int32_t
       place(batch, footprint_, kViews * (swept.window - begin) + view, 0, swept_);
     }
   }
-  // What has a flag: an object, or a group.
+  // The units that have a flag: objects, or groups of them.
   const bool intervals = batch.rule == VisibilityRule::intervals;
   std::vector<std::size_t> first_object;  // of each unit
   for (std::size_t i = 0; i < batch.objects.size(); ++i) {
@@ -262,7 +262,7 @@ void GlExecutor::runWindows(const Batch& batch, std::int32_t begin, std::int32_t
     kept[unit] = unusable[static_cast<std::size_t>(window - begin)];
     for (int view = 0; view < kViews; ++view) {
       const auto id = static_cast<std::uint32_t>(kViews * unit) + static_cast<std::uint32_t>(view);
-      Range range;
+      VertexRange range;
       range.first = static_cast<std::int32_t>(objects_.size());
       for (std::size_t i = first; i <= last && !kept[unit]; ++i) {
         const auto outcome = projector_.project(batch, batch.objects[i].volume,

@@ -26,7 +26,7 @@ class GlExecutor : public Executor {
     std::uint32_t id;
   };
   /// Vertices of a group in a view, one after the other.
-  struct Range {
+  struct VertexRange {
     std::int32_t first = 0, count = 0;
   };
   struct Current;  ///< the context is the thread's while it lives
@@ -53,7 +53,7 @@ class GlExecutor : public Executor {
   Projector projector_;
   Footprint footprint_;
   std::vector<Vertex> swept_, objects_;
-  std::vector<Range> ranges_;
+  std::vector<VertexRange> ranges_;
 };
 
 }  // namespace visibility

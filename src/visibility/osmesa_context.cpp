@@ -58,7 +58,7 @@ class OsmesaContext : public OffscreenContext {
   }
 
   void makeCurrent() override {
-    // Whose buffer a context draws to can't be asked: another one could not be given back.
+    // OSMesa can't be asked for a context's buffer, so another context could not be given back.
     if (osmesa_.current()) throw std::runtime_error("the thread has an OSMesa context of its own");
     if (!osmesa_.makeCurrent(context_, canvas_, GL_UNSIGNED_BYTE, kSide, kSide)) {
       throw std::runtime_error("OSMesa can't make its context current");

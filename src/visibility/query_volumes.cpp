@@ -11,23 +11,23 @@ using engine::CullCandidate;
 using engine::SweptLink;
 
 constexpr int kParts = 8;
-/// Objects of a query: some tens of milliseconds of work. What does not go in stays as it is.
-constexpr std::size_t kMostObjects = 20000;
-/// Objects of a pair. Where more are left after the 13 directions they seldom all go, and drawing them costs more than
-/// the solver's search: measured by bench_visibility_map (doc/VISIBILITY.md, "Where it pays").
-constexpr std::size_t kMostOfPair = 64;
+/// Objects of a query: some tens of milliseconds of work. Objects beyond this number stay as they are.
+constexpr std::size_t kMaxObjects = 20000;
+/// Most objects of a pair. If more are left after the 13 directions, they seldom all go, and drawing them costs more
+/// than the solver's search. Measured by bench_visibility_map (doc/VISIBILITY.md, "Where it pays").
+constexpr std::size_t kMaxObjectsOfPair = 64;
 /// A window's side is at least this part of its longest one: pixels stay within reason.
 constexpr double kFlattest = 1.0 / 64;
 /// Size of clusters, as a part of the longest side of what is swept.
 constexpr double kCluster = 0.5;
 
-/// Of a bit for each node.
+/// Number of words that hold a bit for each node.
 std::size_t wordsOf(const engine::TreeView& tree) {
   return static_cast<std::size_t>(tree.num_nodes + 63) / 64;
 }
 
-/// The part of the link's box that the pieces' boxes leave, a little larger, so that a point on its border is well
-/// within by the rounding of its pixel coordinates.
+/// The part of the link's box that the pieces' boxes leave, a little larger. So a point on its border is well within
+/// it, by more than the rounding of its pixel coordinates.
 Window windowOf(const Bounds& link, const Bounds& pieces) {
   Window window;
   double longest = 0;
@@ -108,7 +108,7 @@ void QueryVolumes::add(const engine::Problem& problem, const SweptLink* links, c
       work_.moving_pairs += kinds_.back() == Kind::moving;
       const std::size_t objects = batch.objects.size(), points = batch.points.size(), groups = clusters_.size();
       const Bounds reached = reach;
-      collection.most = std::min(first_object_ + kMostObjects, objects + kMostOfPair);
+      collection.most = std::min(first_object_ + kMaxObjects, objects + kMaxObjectsOfPair);
       std::uint32_t met = c.lanes;
       if (!BodyPieces(tree, *c.at, c.margin + tolerance_distance)
                .add(parts, met, least, kCluster * size, window, i, collection, reach)) {
@@ -170,7 +170,7 @@ void QueryVolumes::apply(CullCandidate* candidates) const {
     if (first != kNone) candidates[c.pair].free_nodes = free_nodes_.data() + first;
   }
   for (std::size_t pair = 0; pair < first_word_.size(); ++pair) {
-    // Of the others single lanes are left as they are: the solver would find the same, by other roundings.
+    // Single lanes of the other pairs are left as they are: the solver would find the same, by other roundings.
     if (isFree(pair)) candidates[pair].lanes = 0;
   }
 }

@@ -26,9 +26,9 @@ struct Progress {
 
 /// With the stage.
 /// @return whether this is the answer without it too: the motion is free, or nothing was taken out.
-bool solveShortened(const VisibilityCuller& culler, Way way, const Solver& solver, const engine::Query& query,
-                    engine::Answer& answer, Report& report, const Microseconds& now) {
-  Stage stage(culler, way, query.tolerance_distance, now);
+bool solveShortened(const VisibilityCuller& culler, ExecutorKind kind, const SolveFunction& solver,
+                    const engine::Query& query, engine::Answer& answer, Report& report, const Microseconds& now) {
+  Stage stage(culler, kind, query.tolerance_distance, now);
   engine::Query advised = query;
   advised.ask(stage.advisor());
   solver(advised, answer);
@@ -48,7 +48,7 @@ bool takesPart(VisibilityMode mode, const engine::Problem& problem, const engine
   return mode == VisibilityMode::atOnce || query.work_budget == 0;
 }
 
-void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, const Solver& solver,
+void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, const SolveFunction& solver,
            const engine::Problem& problem, engine::Query& query, engine::Answer& answer, Report& report,
            const Microseconds& now) {
   if (!takesPart(mode, problem, query)) {
@@ -56,21 +56,21 @@ void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, 
     return;
   }
   if (mode == VisibilityMode::atOnce) {
-    solveShortened(culler, Way::own, solver, query, answer, report, now);
+    solveShortened(culler, ExecutorKind::own, solver, query, answer, report, now);
     return;
   }
   const bool automatic = mode == VisibilityMode::automatic, measured = automatic && choice.measuresNext();
-  Way way = automatic ? choice.best() : Way::own;
+  ExecutorKind kind = automatic ? choice.best() : ExecutorKind::own;
   // A second context saves no time: contexts take turns.
-  if (automatic && way == Way::own && !ExecutorLoan::isMade(culler)) way = Way::without;
-  Leave trial;
+  if (automatic && kind == ExecutorKind::own && !ExecutorLoan::isMade(culler)) kind = ExecutorKind::none;
+  TrialPermit trial;
   if (measured) trial = choice.mayTry(ExecutorLoan::isMade(culler));
-  if (!trial.given() && way == Way::without && !measured) {
+  if (!trial.given() && kind == ExecutorKind::none && !measured) {
     solver(query, answer);
     return;
   }
-  const bool on = way != Way::without;
-  if (trial.given()) way = trial.way;
+  const bool on = kind != ExecutorKind::none;
+  if (trial.given()) kind = trial.kind;
   Progress progress{query.progress, query.progress_context};
   if (query.progress) {
     query.progress = &Progress::update;
@@ -80,9 +80,9 @@ void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, 
   double with_us = 0, without_us = 0;
   bool stands = false;
   engine::Statistics first;
-  if (way != Way::without) {
+  if (kind != ExecutorKind::none) {
     const double begin = now();
-    stands = solveShortened(culler, way, solver, query, answer, report, now);
+    stands = solveShortened(culler, kind, solver, query, answer, report, now);
     with_us = now() - begin - report.making_us;
     first = answer.statistics;
   }

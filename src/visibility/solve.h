@@ -23,7 +23,7 @@ struct Report : VisibilityStatistics {
 };
 
 /// One of the library's solvers, ready for its problem: answers the query, with its stage 2 (engine::Advisor).
-using Solver = std::function<void(const engine::Query& query, engine::Answer& answer)>;
+using SolveFunction = std::function<void(const engine::Query& query, engine::Answer& answer)>;
 
 /// No contact, no doubt, nothing ignored: an answer that does not depend on what was taken out.
 inline bool isPlainlyFree(const engine::Answer& answer) {
@@ -38,7 +38,7 @@ bool takesPart(VisibilityMode mode, const engine::Problem& problem, const engine
 /// again without. With the stage a work budget would be enough for something else, so that a query with one is solved
 /// without the stage. With `atOnce` the answer is the first one.
 /// @param choice  of this solver: what stage 2 is worth depends on it.
-void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, const Solver& solver,
+void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, const SolveFunction& solver,
            const engine::Problem& problem, engine::Query& query, engine::Answer& answer, Report& report,
            const Microseconds& now = steadyMicroseconds);
 

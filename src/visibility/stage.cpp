@@ -34,7 +34,7 @@ void Stage::clear(void* context, const engine::Problem& problem, const engine::S
                   engine::CullCandidate* pairs, std::int32_t num_pairs) {
   Stage& stage = *static_cast<Stage*>(context);
   const double begin = stage.now_();
-  ExecutorLoan loan(stage.culler_, stage.way_);
+  ExecutorLoan loan(stage.culler_, stage.kind_);
   const double made = loan.made() ? stage.now_() : begin;
   stage.making_us += made - begin;
   try {

@@ -21,10 +21,10 @@ void beginBatch(const VisibilityCuller& culler, Batch& batch);
 
 class Stage {
  public:
-  /// @param way  by the culler's own executor, or by cpu.
+  /// @param kind  the culler's own executor, or cpu.
   /// @param tolerance_distance  of the query, m: see QueryVolumes::add().
-  Stage(const VisibilityCuller& culler, Way way, double tolerance_distance, const Microseconds& now)
-      : culler_(culler), way_(way), tolerance_distance_(tolerance_distance), now_(now) {}
+  Stage(const VisibilityCuller& culler, ExecutorKind kind, double tolerance_distance, const Microseconds& now)
+      : culler_(culler), kind_(kind), tolerance_distance_(tolerance_distance), now_(now) {}
 
   /// The solver's advisor that asks this stage.
   engine::Advisor advisor() {
@@ -45,7 +45,7 @@ class Stage {
   void run(const engine::Problem& problem, const engine::SweptLink* links, engine::CullCandidate* pairs,
            std::int32_t num_pairs, ExecutorLoan& loan);
   const VisibilityCuller& culler_;
-  Way way_;
+  ExecutorKind kind_;
   double tolerance_distance_;
   const Microseconds& now_;
   std::deque<QueryVolumes> volumes_;  ///< of each call: free nodes are to be there until the solver returns

@@ -16,7 +16,7 @@ namespace {
 using engine::Node;
 using engine::Piece;
 
-/// Of the directions of Bounds.
+/// Lengths of the directions of Bounds.
 constexpr double kSqrt2 = 1.41421356237310, kSqrt3 = 1.73205080756888;
 constexpr double kLengths[Bounds::kDirections] = {1,      1,      1,      kSqrt2, kSqrt2, kSqrt2, kSqrt2,
                                                   kSqrt2, kSqrt2, kSqrt3, kSqrt3, kSqrt3, kSqrt3};
@@ -94,8 +94,8 @@ void BodyPieces::place(const double* p, double* x) const {
   for (int k = 0; k < 3; ++k) x[k] = R[3 * k] * p[0] + R[3 * k + 1] * p[1] + R[3 * k + 2] * p[2] + t[k];
 }
 
-/// Of the node's box: where its middle is, and how far its half sides reach, along each direction. A direction is no
-/// longer than sqrt(3), and roundings are some twenty: within its length times pad_.
+/// Bounds of the node's box: where its middle is, and how far its half sides reach, along each direction. A direction
+/// is no longer than sqrt(3), and roundings are some twenty: within its length times pad_.
 Bounds BodyPieces::boundsOf(const Node& node) const {
   double c[3], h[3];
   for (int k = 0; k < 3; ++k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// check --certificate. (What the verifier says of such files: test/certificate.)
+// check --certificate. (test/certificate has the verifier's answers to such files.)
 #include <filesystem>
 #include <fstream>
 #include <sstream>

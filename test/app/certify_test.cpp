@@ -183,6 +183,26 @@ TEST_F(CertifyProgramTest, ManyPlansAreATableAndTheWorstCounts) {
   EXPECT_EQ(answers[0], answers[1]);
 }
 
+// A comment about units helps most if the plan is wrong.
+TEST_F(CertifyProgramTest, APlanThatIsWrongKeepsItsNotes) {
+  const Outcome text = certifyFile("wrong.csv", "# lengths in mm\nhinge,rail\n0,0\n0,9\n");
+  EXPECT_EQ(text.status, 2);
+  EXPECT_NE(text.out.find("error: waypoint 1: joint 'rail' at 9"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("note: line 1 says '# lengths in mm': lengths are taken in m"), std::string::npos)
+      << text.out;
+  const Json plan = Json::parse(certify(path("wrong.csv"), "--json").out).at("plans").at(0);
+  EXPECT_EQ(plan.at("status"), "error");
+  EXPECT_EQ(plan.at("notes").size(), 1u) << plan;
+}
+
+// No tool is followed along tangents of half angles, and the cure is named.
+TEST_F(CertifyProgramTest, ALineIsOfCurvesThatAControllerRuns) {
+  const Outcome refused =
+      certifyFile("line.csv", "hinge,rail\n0,0\n0.1,0\n", "--line tip=1mm --interpolation tangent-half-angle");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("--interpolation linear, cubic, quintic or jtc"), std::string::npos) << refused.err;
+}
+
 TEST_F(CertifyProgramTest, FilesFoldersAndStandardInput) {
   write("folder/b.csv", "hinge,rail\n0,0\n0.5,0\n");
   write("folder/a.jsonl", R"({"waypoints": [[0, 0], [0.5, 0]]})");
@@ -220,7 +240,8 @@ TEST_F(CertifyProgramTest, WhatIsNoPlanStopsTheRun) {
   EXPECT_EQ(run("certify " + plan + " " + armAndBall() + " --scene " + second).status, 0);
 }
 
-/// What this run did not write was written by no run: a plan that collides is not left under the name of a free one.
+/// A run leaves no earlier file under a name that it does not write: a plan that collides must not stand there as a
+/// free one.
 TEST_F(CertifyProgramTest, FilesOfEarlierRunsAreNotLeft) {
   const std::string free = "hinge,rail\n0,0\n0.5,0\n", touching = "hinge,rail\n0,0\n1.5,0\n";
   const std::string out = path("safe.csv"), csv = path("rows.csv"), proof = path("proof.fac");
@@ -302,7 +323,7 @@ TEST_F(CertifyProgramTest, OutputsAreNoInputs) {
     EXPECT_EQ(read(file), plan);
     EXPECT_TRUE(std::filesystem::exists(ball()));
   }
-  // Of a folder of plans, too.
+  // The same holds for a folder of plans.
   write("folder/way.csv", plan);
   EXPECT_EQ(certify(path("folder"), " --out " + path("folder/way.csv")).status, 2);
   EXPECT_EQ(read(path("folder/way.csv")), plan);
@@ -405,7 +426,7 @@ TEST_F(CertifyProgramTest, MendsAndCertifiesAgain) {
   EXPECT_GE(mended.at("deviation"), 0.24);
   EXPECT_GT(mended.at("length_ratio"), 1.05);
   EXPECT_LT(mended.at("length_ratio"), 3);
-  // What was written: it begins and ends as the plan does, and no point of it touches.
+  // The plan that was written begins and ends as the given one does, and no point of it touches.
   std::istringstream rows(read(out));
   std::string line;
   std::getline(rows, line);
@@ -430,7 +451,7 @@ TEST_F(CertifyProgramTest, MendsAndCertifiesAgain) {
       ASSERT_GT(std::hypot(dx, dy), 0.205) << "at " << x << ", " << y;
     }
   }
-  // What was written is free for the plain path too.
+  // The plan that was written is free for the plain path too.
   EXPECT_EQ(this->run("certify " + out + " " + gantry()).status, 0);
   EXPECT_EQ(
       this->run("certify " + path("way.csv") + " " + gantry() + " --mend --margin 0.05 --out " + path("wide.json"))
@@ -489,7 +510,7 @@ TEST_F(CertifyProgramTest, APlanAndWhatItIsMendedToAreShown) {
   EXPECT_NE(run.out.find("through, and what it is mended to in " + mended), std::string::npos) << run.out;
   EXPECT_NE(read(page).find("first contact at t = "), std::string::npos);
   EXPECT_NE(read(mended).find("free: proven for the whole motion"), std::string::npos);
-  // What this run does not write is not left.
+  // A file that this run does not write is removed.
   ASSERT_EQ(this->run("certify " + plans + " " + gantry() + " --html " + page).status, 1);
   EXPECT_FALSE(std::filesystem::exists(mended));
 #ifdef FCL_ARTIC_HAS_PICTURES

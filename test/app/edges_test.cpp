@@ -520,7 +520,7 @@ TEST_F(EdgesTest, LimitsAreAsTolerantAsThoseOfPlans) {
   EXPECT_EQ(refused("strict"), std::vector<bool>(4, true));
 }
 
-// What an earlier library has proven may be wrong: its rows and roadmaps are not believed.
+// Answers that an earlier library has proven may be wrong: its rows and roadmaps are not believed.
 TEST_F(EdgesTest, HashesKnowTheErrata) {
   std::istringstream errata(read(std::string(FCL_ARTIC_SOURCE) + "/doc/ERRATA.md"));
   int entries = 0;
@@ -559,7 +559,7 @@ TEST_F(EdgesTest, ScenesOfShapesAreThoseOfFiles) {
   const std::string base = "certify --edges " + path("edges.h5") + " --robot " + path("arm.urdf") + " --threads 1 ";
   ASSERT_EQ(run(base + "--scenes " + shapes + " --out " + path("shapes")).status, 0);
   EXPECT_EQ(hash("shapes"), hash("files"));
-  // What --scene names stands in all of them.
+  // Bodies of --scene stand in all scenes.
   ASSERT_EQ(run(base + "--scenes " + shapes + " --scene " + path("ball.urdf") + " --out " + path("both")).status, 0);
   const auto both = column<std::int64_t>(File(path("both/table.h5")), "status");
   const auto one = column<std::int64_t>(File(path("shapes/table.h5")), "status");

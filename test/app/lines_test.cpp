@@ -64,7 +64,7 @@ TEST_F(LinesTest, NotesAndWhatWasNotCheckedAreSaid) {
   const Answers beyond = ask("{\"waypoints\": [[0, 0], [2.5, 0]]}\n");
   EXPECT_NE(beyond.lines.at(0).at("notes").dump().find("waypoint 1 is beyond its limits"), std::string::npos)
       << beyond.lines[0];
-  // Of robot and scene: here that its joint stands at 0.
+  // Notes of robot and scene: here that the scene's joint stands at 0.
   const std::string scene =
       write("door.urdf",
             "<robot name='d'><link name='d'/><link name='e'><collision><origin xyz='9 9 9'/><geometry>"

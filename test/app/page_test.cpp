@@ -24,7 +24,7 @@ using namespace fcl_artic;
 using namespace fcl_artic::app;
 using Json = nlohmann::json;
 
-/// What stands between two texts, the first time.
+/// The text between two others, the first time.
 std::string between(const std::string& text, const std::string& open, const std::string& close) {
   const std::size_t begin = text.find(open);
   if (begin == std::string::npos) return {};
@@ -188,7 +188,7 @@ TEST_F(ProgramTest, UnwritablePageIsAnError) {
   EXPECT_NE(run.err.find("/nowhere/x.html"), std::string::npos) << run.err;
 }
 
-/// Of a configuration: the distance of the arm's box from the ball (run_program.h), in closed form in the arm's frame.
+/// For a configuration: the distance of the arm's box from the ball (run_program.h), in closed form in the arm's frame.
 double distanceOfBall(double hinge) {
   const double angle = M_PI / 3 - hinge, x = 0.6 * std::cos(angle), y = 0.6 * std::sin(angle);
   const double dx = std::max({0.0, -x, x - 1}), dy = std::max(0.0, std::abs(y) - 0.05);
@@ -323,7 +323,7 @@ class PageInBrowser : public ProgramTest {
     ProgramTest::SetUp();
     if (std::system("command -v chromium >/dev/null 2>&1") != 0) GTEST_SKIP() << "chromium is not found";
   }
-  /// What chromium prints, with the page drawn by software.
+  /// The output of chromium, with the page drawn by software.
   std::string browse(const std::string& page, const std::string& options) const {
     const std::string command =
         "timeout 200 chromium --headless=old --no-sandbox --use-angle=swiftshader "

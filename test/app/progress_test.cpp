@@ -20,7 +20,7 @@ namespace {
 using fcl_artic::app::ProgressBar;
 using fcl_artic::app::WaitingNote;
 
-/// What `draw` writes to standard error when that is `file`; read from `from` afterwards.
+/// The text that `draw` writes to standard error when that is `file`; read from `from` afterwards.
 std::string written(int file, int from, const std::function<void()>& draw) {
   const int saved = dup(STDERR_FILENO);
   dup2(file, STDERR_FILENO);
@@ -48,7 +48,7 @@ void shortThenLong() {
   bar.show(0.75);  // too soon after the last one
 }
 
-/// What `draw` writes to a terminal; nothing where none can be had.
+/// The text that `draw` writes to a terminal; none if no terminal can be had.
 std::optional<std::string> onATerminal(const std::function<void()>& draw) {
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
   if (terminal < 0 || grantpt(terminal) || unlockpt(terminal)) return std::nullopt;

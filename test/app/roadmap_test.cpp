@@ -173,7 +173,7 @@ TEST_F(RoadmapTest, LinksAreCheckedWhenItIsMadeAndAgainWhereThatDoesNotHold) {
   }
   EXPECT_GT(counts("more.h5", "", err).second, 0);
   EXPECT_NE(err.find("the roadmap was changed since it was made"), std::string::npos) << err;
-  // What is certified again holds for the same edges.
+  // A roadmap that is certified again holds for the same edges.
   ASSERT_EQ(run("roadmap certify " + path("map.h5") + " --robot " + robot + " --out " + path("again.h5")).status, 0);
   EXPECT_EQ(counts("again.h5", "", err).second, 0);
   EXPECT_EQ(err, "");
@@ -306,7 +306,7 @@ TEST_F(RoadmapTest, ExitStatusIsThatOfTheWorstEdge) {
   ASSERT_EQ(make("empty.h5", "--vertices 1 --neighbours 3").status, 0);
   EXPECT_EQ(certify("empty.h5", "x.csv").status, 3);
   EXPECT_EQ(certify("arm.urdf", "x.csv").status, 2);
-  // What can't be written is an error, and said all the same.
+  // An output that can't be written is an error, and the answer is printed all the same.
   std::filesystem::create_symlink("/dev/full", path("full.csv"));
   const Outcome full = certify("map.h5", "full.csv");
   EXPECT_EQ(full.status, 2);

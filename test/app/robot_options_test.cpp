@@ -173,7 +173,7 @@ TEST_F(ProgramTest, ScenesAreFilesAndNoFolders) {
   const Outcome folder = this->run("check --robot " + arm() + " --from 0,0 --to 1,0 --scene " + folder_.string());
   EXPECT_EQ(folder.status, 2);
   EXPECT_NE(folder.err.find("is a directory, not a file"), std::string::npos) << folder.err;
-  // What the shell passes on is read.
+  // A file that the shell passes on is read.
   const Outcome passed_on = this->run("check --robot /dev/stdin --from 0,0 --to 0.1,0 <" + arm());
   EXPECT_EQ(passed_on.status, 0) << passed_on.err;
   // Its paths begin where the program runs.

@@ -10,7 +10,7 @@
 
 #include "../urdf/temp_folder.h"
 
-/// What the program left behind.
+/// The output and status that the program left.
 struct Outcome {
   int status = -1;  ///< exit status; -1 when it did not exit by itself
   std::string out, err;

@@ -64,7 +64,7 @@ TEST_F(SrdfVerbTest, ChecksAnSrdf) {
   const Outcome wrong = run("srdf " + robot + " --check " + srdf("wrong.srdf", "left", "right"));
   EXPECT_EQ(wrong.status, 1);
   EXPECT_NE(wrong.out.find("left and right: in "), std::string::npos) << wrong.out;
-  // What a planar joint carries has no limits.
+  // A body that a planar joint carries has no limits.
   const std::string cart = write("cart.urdf", R"(<robot name='cart'><link name='base'/>
 <link name='left'><collision><geometry><sphere radius='0.1'/></geometry></collision></link>
 <link name='lamp'><collision><geometry><sphere radius='0.1'/></geometry></collision></link>

@@ -109,7 +109,7 @@ TEST_F(TrajectoryProgramTest, NobodyGuessesWhereAJointStands) {
                                  write("some.jsonl", "{\"from\": {\"hinge\": 0}, \"to\": [0, 0]}\n"));
   EXPECT_EQ(line.status, 2);
   EXPECT_NE(line.out.find(wanted), std::string::npos) << line.out;
-  // What is said twice is the same.
+  // A question that is asked in two ways has the same answer.
   for (const std::string& motion :
        {" --trajectory " + write("all.csv", "t,hinge,rail\n0,0,0\n1,0,0.5\n"), std::string(" --from 0,0 --to 0,0.5"),
         std::string(" --from hinge=0,rail=0 --to hinge=0,rail=0.5")}) {
@@ -153,7 +153,7 @@ TEST_F(TrajectoryProgramTest, FloatingBaseByName) {
                 " --state base/trans_z=0,base/rot_x=0,base/rot_y=0");
   ASSERT_EQ(run.status, 1) << run.err;
   EXPECT_NEAR(Json::parse(run.out).at("t_lower"), 0.519615242270663 - 0.2, 1e-5);
-  // Of the cube of edge 2 at the origin octants 0, 1 and 7 are known, and 1 and 7 occupied.
+  // In the cube of edge 2 at the origin, octants 0, 1 and 7 are known, and 1 and 7 occupied.
   const std::string cells = write("cells.bt", std::string("# Octomap OcTree binary file\nid OcTree\nsize 4\n"
                                                           "res 0.000030517578125\ndata\n\x09\x80"));
   const std::string at = "-0.5,0.5,-0.5,0,0,0,1";

@@ -351,7 +351,7 @@ TEST(BroadPhaseTest, FirstContactIsTheEarliestOfAllPairs) {
     ContinuousCollisionManager manager;
     manager.registerObjects(all);
     manager.setup();
-    // What touches from the beginning would always win.
+    // A pair that touches from the beginning would always win.
     std::vector<MovingPair> truth;
     CertifiedRequest request;
     request.ignore_initial_contact = true;
@@ -426,7 +426,7 @@ TEST(BroadPhaseTest, AnyContactEndsTheSearch) {
       ++free;
       continue;
     }
-    // What is said of times before the contact must not be more than what is known of all pairs.
+    // No more may be claimed about times before the contact than is known of all pairs.
     EXPECT_LE(any.t_lower, first.t_upper);
     EXPECT_GE(any.t_upper, first.t_lower);
     if (!any.certain) continue;
@@ -444,8 +444,8 @@ TEST(BroadPhaseTest, AnyContactEndsTheSearch) {
 }
 
 TEST(BroadPhaseTest, ContactTimeInClosedForm) {
-  // Two spheres of radius 0.5 meet when their centres are 1 apart: 10 - 12 t = 1. Of the other, later pair, nothing
-  // shows.
+  // Two spheres of radius 0.5 meet when their centres are 1 apart: 10 - 12 t = 1. Nothing shows of the other, later
+  // pair.
   const auto a = sphere(0.5, at(0, 0, 0), at(6, 0, 0)), b = sphere(0.5, at(10, 0, 0), at(4, 0, 0));
   const auto c = sphere(0.5, at(0, 5, 0), at(6, 5, 0)), d = sphere(0.5, at(11, 5, 0), at(5, 5, 0));
   ContinuousCollisionManager manager;

@@ -270,7 +270,7 @@ TEST(Certificates, OfJointsThatTurnSeveralTimes) {
   expectProven(result.certificate);
 }
 
-/// What is kept by squares, or by a product of three squares, must show in the verifier's last digits.
+/// Sizes that enter by squares, or by a product of three squares, must show in the verifier's last digits.
 TEST(CertificatesOfPairs, ContactsOfSmallShapesAreProven) {
   const auto at = [](double x, double y) { return fcl::Transform3d(Eigen::Translation3d(x, y, 0)); };
   int proven = 0;
@@ -296,7 +296,7 @@ TEST(CertificatesOfPairs, ContactsOfSmallShapesAreProven) {
   EXPECT_GE(proven, 10);
 }
 
-/// Of what is within a closed surface a proof by pieces says nothing, unless the mesh is a solid.
+/// A proof by pieces says nothing about bodies within a closed surface, unless the mesh is a solid.
 TEST(CertificatesOfPairs, ASolidIsNotItsSurface) {
   auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
   std::vector<Vector3d> corners;
@@ -342,8 +342,8 @@ TEST(CertificatesOfPairs, ASolidIsNotItsSurface) {
   EXPECT_FALSE(*result.certificate);  // they touch from the beginning on
 }
 
-/// In the notch of an L no direction parts a ball from all of the solid: it is cut, and the proof names the points that
-/// show that neither is in the other.
+/// In the notch of an L no direction parts a ball from all of the solid. So the solid is cut, and the proof names the
+/// points that show that neither body is in the other.
 TEST(CertificatesOfPairs, ASolidThatIsCutNamesItsPoints) {
   const double outline[6][2] = {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};
   std::vector<Vector3d> corners;

@@ -54,7 +54,7 @@ double fly(double aside, int overload) {
   return result.is_collide ? result.time_of_contact : 2;
 }
 
-/// What else such code uses: static queries, meshes, managers, callbacks, other motions. All of it is FCL's own.
+/// Other uses of such code: static queries, meshes, managers, callbacks, other motions. All of it is FCL's own.
 bool othersWork() {
   ccd::BVHModel<ccd::OBBRSSd> mesh;
   ccd::generateBVHModel(mesh, ccd::Boxd(1, 1, 1), ccd::Transform3d::Identity(), ccd::FinalizeModel::DO);

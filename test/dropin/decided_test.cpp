@@ -113,9 +113,9 @@ TEST(Decided, AGapAboveTheToleranceEndsFree) {
   EXPECT_GT(asked, 2000);
 }
 
-/// A ball goes round another one at a gap of margin + tolerance_distance, without turning, so that no direction serves
-/// for long in either's frame; and the tolerance of time is so coarse that the search comes to its finest part of the
-/// motion, where it may take what is near for a contact, before it has gone round.
+/// A ball goes round another one at a gap of margin + tolerance_distance, without turning, so no direction serves for
+/// long in either's frame. The tolerance of time is so coarse that the search comes to its finest part of the motion
+/// before the ball has gone round. There it may take a near ball for a contact.
 TEST(Decided, AGapAboveTheToleranceEndsFreeHoweverCoarseTheToleranceOfTime) {
   using namespace fcl_artic;
   pairs::Random random(52);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the drop-in promises beside right times: every overload, both scalars, results in full, bad input, contacts,
+// Promises of the drop-in beside right times: every overload, both scalars, results in full, bad input, contacts,
 // constant inputs.
 #include "fcl_artic/continuous_collision.h"
 
@@ -352,9 +352,9 @@ std::shared_ptr<fcl::MotionBased> turningWay(int kind, const Eigen::Matrix3d& R,
                                                      angle * n, 2 * angle * n);
 }
 
-// Half-spaces and planes that turn about their common normal stay parallel: in every order, whoever turns, wherever the
-// axis is, their distance goes along a line from 2 m to 1 m (free) or to -2 m (contact at 0.5). A turn about any other
-// axis takes them to where they meet.
+// Half-spaces and planes that turn about their common normal stay parallel. In every order, whichever turns, wherever
+// the axis is, their distance goes along a line from 2 m to 1 m (free) or to -2 m (contact at 0.5). A turn about any
+// other axis takes them to where they meet.
 TEST(DropIn, UnboundedPairsThatTurnAboutTheirNormalStayParallel) {
   struct Kinds {
     bool half1, half2;
@@ -415,7 +415,7 @@ TEST(DropIn, UnboundedPairsThatTurnAboutTheirNormalStayParallel) {
   EXPECT_EQ(askew, 144);
 }
 
-// What is no tolerance is refused, 0 too, and the message has the number itself, however small.
+// A value that is no tolerance is refused, 0 too, and the message has the number itself, however small.
 TEST(DropIn, TolerancesThatAreNoPositiveNumbersAreRefusedByValue) {
   const fcl::Boxd box(1, 1, 1);
   const TranslationMotiond rest(at(0), at(0)), go(at(3), at(2));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// One geometry of each of FCL's 19 kinds, half a metre or less to each side, and with a point of its surface where the
-// x axis leaves it on the right: so far, and no farther, it reaches in the direction x, however it is turned about x.
+// One geometry of each of FCL's 19 kinds, half a metre or less to each side. Each has a point of its surface where the
+// x axis leaves it on the right. In the direction x it reaches just as far, however it is turned about x.
 #pragma once
 
 #include <memory>

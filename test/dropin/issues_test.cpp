@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What users reported of FCL's continuous collision, restated with answers worked out by hand. Each test is named for
+// Reports of users about FCL's continuous collision, restated with answers worked out by hand. Each test is named for
 // its issue.
 #include <cmath>
 #include <cstring>

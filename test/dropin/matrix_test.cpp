@@ -39,7 +39,7 @@ constexpr unsigned kSecondsPerCell = 20;
 constexpr double kTocErr = 1e-6;
 /// First touch of a hit, at 1 of 3 m.
 constexpr double kTouch = 1.0 / 3;
-/// What the poses' own rounding moves the touch by: some ulp of 10 m at 3 m per unit of time.
+/// The poses' own rounding moves the touch by this much: some ulp of 10 m at 3 m per unit of time.
 constexpr double kRounding = 1e-13;
 /// Both at the tolerance of time before the touch and 1e-6 m before it may contact be reported.
 constexpr double kEarly = kTocErr + 1e-6 / 3 + kRounding;
@@ -137,7 +137,7 @@ class Matrix {
     // x.
     Matrix3d W =
         Eigen::AngleAxisd(0.7, spline ? Vector3d(1, 0, 0) : Vector3d(1, 2, -1).normalized()).toRotationMatrix();
-    // What turns about x. Of half-spaces and planes that is the normal, so that two of them stay parallel.
+    // Whether a motion turns about x. For half-spaces and planes x is the normal, so two of them stay parallel.
     const auto turns = [&](const auto& g) {
       if (c.way == Way::trans || c.way == Way::translation_motion) return false;
       return !spline || g.turn.isIdentity();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Octrees that stand still: only the cells near the other body's path are read, and nobody can tell by the answers but
-// for the work; cells are named as FCL names them.
+// Octrees that stand still. Only the cells near the other body's path are read, and only the work shows that, not the
+// answers. Cells are named as FCL names them.
 #include "fcl_artic/continuous_collision.h"
 
 #include <cmath>
@@ -129,7 +129,7 @@ TEST(DropInOcTree, CellsFarFromThePathAreNotRead) {
   request.added_margin = 0.1;
   ASSERT_EQ(fcl_artic::continuousCollide(&room, &rest, &ball, &half, request, r), Status::contact);
   EXPECT_NEAR(r.t_lower, 1.55 / 1.6, 1e-5);
-  // What is unbounded comes everywhere.
+  // An unbounded body comes everywhere.
   const fcl::Halfspaced floor(Vector3d::UnitX(), -1.95);
   EXPECT_EQ(fcl_artic::continuousCollide(&room, &rest, &floor, &rest, CertifiedRequest(), r), Status::contact);
 }

@@ -172,8 +172,8 @@ TEST(PartingNormals, TheNamedPiecesPartAlongThemByTheLeastDepth) {
         EXPECT_NEAR(c.normal.norm(), 1, 1e-9) << name;
         if (c.feature != FeatureKind::volume) continue;  // of two triangles it is that of the features that meet
         ++deep;
-        // They part along `out` by this depth, so that the least one is no larger; 2 % are those of curved bodies, of
-        // which a polytope with some hundred corners knows the depth.
+        // They part along `out` by this depth, so the least depth is no larger. The 2 % are for curved bodies: a
+        // polytope with some hundred corners stands for them.
         const Geometry of_a = pieceOf(a, c.b1), of_b = pieceOf(b, c.b2);
         EXPECT_TRUE(apart(of_a, A, of_b, moved(B, 1.02 * depth * c.normal + 2e-6 * c.normal)))
             << name << ": size " << size << ", depth " << depth << ", normal " << c.normal.transpose() << ", out "

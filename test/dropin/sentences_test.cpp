@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Sentences of doc/PROMISE.md that no other test has: what is a solid and what a surface, near misses with fine
-// tolerances, short separations after an ignored contact, and the processor's modes.
+// Sentences of doc/PROMISE.md that no other test has: solids and surfaces, near misses with fine tolerances, short
+// separations after an ignored contact, and the processor's modes.
 
 #include <algorithm>
 #include <cfenv>
@@ -65,7 +65,7 @@ GeometryPtr mesh(const std::vector<Vector3d>& vertices, const std::vector<fcl::T
   return model;
 }
 
-/// Of half sides x, y, z.
+/// A mesh of a box with half sides x, y, z.
 GeometryPtr boxMesh(double x, double y, double z) {
   std::vector<Vector3d> v;
   for (int c = 0; c < 8; ++c) v.emplace_back(c & 1 ? x : -x, c & 2 ? y : -y, c & 4 ? z : -z);
@@ -174,9 +174,9 @@ TEST(PromiseSentences, NearMissesAreFreeWithAFineTolerance) {
   EXPECT_EQ(asked, 4000);
 }
 
-/// "Pairs not proven apart at t = 0 are left out until the start of the first of the time intervals examined (of 1/8,
-/// 1/64, 1/512) on which they are proven apart; shorter separations are not looked for": a ball between two walls of
-/// one mesh, of which it touches the first one at t = 0 and is apart from both for a while.
+/// Pairs not proven apart at t = 0 are left out. They are checked from the start of the first of the time intervals
+/// examined (of 1/8, 1/64, 1/512) on which they are proven apart. Shorter separations are not looked for. A ball stands
+/// between two walls of one mesh: it touches the first one at t = 0, and is apart from both for a while.
 TEST(PromiseSentences, ShortSeparationsAreNotLookedFor) {
   const GeometryPtr ball = std::make_shared<fcl::Sphered>(0.1);
   for (const double apart : {0.0005, 0.0015, 0.0045, 0.02, 0.3}) {
@@ -237,8 +237,8 @@ std::uint64_t workOf(const CertifiedPairResult& result) {
   return s.node_tests + s.leaf_tests + s.certificates + s.gjk + s.contact_proofs;
 }
 
-// Of huge bodies rounding hides more than tolerance_distance: such a gap may be taken for contact at once, as no finer
-// interval of time decides it. (It was divided down to the finest, up to a hundred times the work.)
+// If bodies are huge, rounding hides more than tolerance_distance. Such a gap may be taken for contact at once, as no
+// finer interval of time decides it. (It was divided down to the finest, up to a hundred times the work.)
 TEST(PromiseSentences, RestingCostsNoMoreWhereRoundingHidesMore) {
   pairs::Random random(5);
   int contacts = 0;
@@ -258,8 +258,8 @@ TEST(PromiseSentences, RestingCostsNoMoreWhereRoundingHidesMore) {
   EXPECT_EQ(contacts, 48);
 }
 
-// What rests exactly on something costs about what it costs 10 um farther up, though no triangle of it is proven apart
-// or in contact: some of them are enough. (All were looked at, a thousand times the work.)
+// A body that rests exactly on another costs about as much as one 10 um farther up. No triangle of it is proven apart
+// or in contact, but some of them are enough. (All were looked at, a thousand times the work.)
 TEST(PromiseSentences, RestingCostsAboutWhatStandingClearCosts) {
   pairs::Random random(6);
   for (int i = 0; i < 24; ++i) {
@@ -293,8 +293,8 @@ GeometryPtr tube(double radius, double half, std::size_t n) {
   return mesh(vertices, triangles);
 }
 
-// Of bodies that are in each other at the start, some triangles that touch are enough. (All that do were divided down
-// to the finest interval: of crossing tubes a hundred times the work.)
+// If bodies are in each other at the start, some triangles that touch are enough. (All that do were divided down to the
+// finest interval: of crossing tubes a hundred times the work.)
 TEST(PromiseSentences, WhatIsInEachOtherAtTheStartIsContactWithoutMoreAdo) {
   pairs::Random random(8);
   const GeometryPtr one = tube(0.1, 0.7, 150), other = tube(0.1, 0.7, 150);
@@ -369,8 +369,8 @@ TEST(PromiseSentences, ContactOfDeepBodiesIsCertainThoughSomeOfTheirFacesAreInOn
 }
 
 // A plate comes down on another one, a tile of it somewhat lower than the rest: both meet within one of the finest
-// lanes. Of the many pairs that can't be decided some are enough, and the tile may not be among them: no contact is
-// late.
+// lanes. There are many pairs that can't be decided. Some of them are enough, and the tile may not be among them: no
+// contact is late.
 TEST(PromiseSentences, OfManyUndecidedPairsTheEarliestIsNotLate) {
   pairs::Random random(7);
   int contacts = 0;

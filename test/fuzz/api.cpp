@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trees, geometries, motions and requests with hostile numbers. What is accepted is asked, and the answer is compared
-// with balls inside the shapes: where such a ball of a link meets one of an obstacle, or its centre a half-space, the
-// motion is not free. The judge's poses are the tree's, its arithmetic is its own.
+// Trees, geometries, motions and requests with hostile numbers. Inputs that are accepted are asked, and the answer is
+// compared with balls inside the shapes. If such a ball of a link meets one of an obstacle, or its centre a half-space,
+// the motion is not free. The judge's poses are the tree's, its arithmetic is its own.
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>

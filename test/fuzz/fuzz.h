@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the fuzz targets share. A target is a file with LLVMFuzzerTestOneInput(); libFuzzer runs it with inputs of its
+// Shared by the fuzz targets. A target is a file with LLVMFuzzerTestOneInput(); libFuzzer runs it with inputs of its
 // own, replay.cpp with those of the corpus. Wrong input may throw what the headers document; all else is a fault.
 #pragma once
 

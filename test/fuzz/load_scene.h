@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Of the targets that read scenes.
+// Shared by the targets that read scenes.
 #pragma once
 
 #include <fcl/geometry/shape/sphere.h>

@@ -186,8 +186,8 @@ std::string dump(const TreeView& view) {
 
 }  // namespace
 
-// A little ball beyond the farthest point along any direction is free by FCL's own static check, one that reaches past
-// it is not: kinds, sizes, axes and ends are what FCL means by them.
+// A little ball beyond the farthest point along any direction is free by FCL's own static check; one that reaches past
+// it is not. So kinds, sizes, axes and ends are what FCL means by them.
 TEST(FclGeometry, EndsWhereFclSaysThatItEnds) {
   Random random(2);
   const double r = 1e-2, off = 1e-3;
@@ -303,7 +303,7 @@ TEST(FclGeometry, IsLeftAsItWas) {
   forEachShape<double>(check);
   forEachShape<float>(check);
   EXPECT_EQ(checked, 38);
-  // What they point to.
+  // The corners to which they point.
   const auto model = mesh<fcl::OBBRSS<double>>();
   const std::vector<Vector3d> vertices(model->vertices, model->vertices + model->num_vertices);
   cachedGeometry(*model);

@@ -187,7 +187,7 @@ TEST(InnerBalls, OpenMeshesGetNone) {
   for (int i = 0; i < balls->count; ++i) EXPECT_TRUE(alone.encloses(centerOf(*balls, i)));
 }
 
-/// What is drawn in one piece goes by the parity of all of it: a cavity is not inside.
+/// Balls in a mesh of one piece go by the parity of all of it: a cavity is not inside.
 TEST(InnerBalls, CavityOfOnePieceIsNotInside) {
   Random random(5);
   for (int i = 0; i < 10; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What bounds a geometry holds it: boxes, line swept spheres, outer hulls.
+// Bounds of a geometry hold it: boxes, line swept spheres, outer hulls.
 #include "geometry/shape_tree.h"
 
 #include <cmath>
@@ -109,7 +109,7 @@ TEST(OuterHull, HoldsEachPointOfAMesh) {
     for (const Vector3d& p : points) {
       body.pose.c = baseline::Vec3(p.data());
       baseline::GjkResult g;
-      baseline::gjk(body, body.pose.c, 1e-6, 0, 100, g);
+      baseline::gjk(body, body.pose.c, {1e-6, 0, 100}, g);
       const Vector3d u = Vector3d::Map(g.n.k);
       double inside = -INFINITY;
       for (const Vector3d& v : hull.vertices) inside = std::max(inside, u.dot(v));

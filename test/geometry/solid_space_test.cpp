@@ -195,7 +195,7 @@ TEST(SolidSpace, WhatIsNoSolid) {
   EXPECT_EQ(open.tree(false)->space(), nullptr);
 }
 
-// Of a body that is no mesh: points of each piece, all of them within it.
+// For a body that is no mesh: points of each piece, all of them within it.
 TEST(SolidSpace, PointsOfShapes) {
   engine::Piece piece;
   piece.kind = engine::PieceKind::cone;

@@ -15,7 +15,7 @@ constexpr Operation kOperations[] = {Operation::add,     Operation::subtract,   
                                      Operation::scale,   Operation::negate,     Operation::divide,
                                      Operation::square,  Operation::squareRoot, Operation::absolute,
                                      Operation::maximum, Operation::minimum};
-/// Those that lanes have.
+/// The operations that lanes have.
 constexpr int kLaneOperations = 4;
 
 struct Arithmetic {
@@ -29,7 +29,7 @@ struct Arithmetic {
 
 extern const Arithmetic kArithmeticPortable, kArithmeticSse2, kArithmeticAvx2, kArithmeticAvx512, kArithmeticNeon;
 
-/// Those that this processor runs.
+/// The arithmetics that this processor runs.
 std::vector<const Arithmetic*> arithmetics();
 
 }  // namespace numerics_test

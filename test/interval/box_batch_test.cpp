@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The test of boxes in lanes against its twin for one pair (redon/overlap.h), and against exact positions; on every
-// instruction set of the machine, in every rounding mode of the caller.
+// The test of boxes in lanes against its twin for one pair (redon/overlap.h), and against exact positions. It runs on
+// every instruction set of the machine, in every rounding mode of the caller.
 #include <cmath>
 #include <cstdio>
 #include <cstring>

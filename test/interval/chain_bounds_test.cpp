@@ -111,8 +111,8 @@ TEST(ChainBounds, HoldExactPosesOfBodies) {
   campaign<BodyCase>("ChainBounds bodies", 100000);
 }
 
-/// Slides only, at single times, every other joint fixed: what the intervals are wider than a point by is what is known
-/// of the stored transforms, and little else that could hide an error in it.
+/// Slides only, at single times, every other joint fixed. So intervals are wider than a point by the error of the
+/// stored transforms, and by little else that could hide a fault in it.
 TEST(ChainBounds, HoldTheModelsOfStoredTransforms) {
   Random random(seedOf("Stored transforms"));
   constexpr int kSlides = 4;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What compilers are known to break in directed rounding, tried on the library's own types.
+// Faults that compilers are known to have in directed rounding, tried on the library's own types.
 #include <cfenv>
 #include <cstdint>
 

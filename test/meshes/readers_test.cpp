@@ -22,11 +22,11 @@ TriangleSoup read(const Reader& reader, const std::string& content) {
   notes.clear();
   const Source source{"file", content, "file", &notes};
   TriangleSoup soup = reader(source);
-  soup.tell(source);
+  soup.noteSkipped(source);
   return soup;
 }
 
-/// Of a file that is to be refused.
+/// The error of a file that must be refused.
 std::string errorOf(const Reader& reader, const std::string& content) {
   try {
     return std::to_string(read(reader, content).triangles.size()) + " triangles are read";
@@ -137,7 +137,7 @@ TEST(Obj, MarksLineEndsAndWordsThatWouldShiftVertices) {
   expectContains(errorOf(readObj, kObj + "f 1 2 3 x/1\n"), "'x/1' names no vertex");
 }
 
-// Of a name that ends in a backslash some readers take the next line for a part, a face or a vertex.
+// If a name ends in a backslash, some readers take the next line, a face or a vertex, for a part of it.
 TEST(Obj, LinesThatMayTakeInTheNextOneAreRefused) {
   for (const char* line : {"g part\\\n", "usemtl C:\\mat\\ \n", "o a \\\n", "vn 0 0 \\\n"}) {
     expectContains(errorOf(readObj, kObj + line + "f 1 2 3\nf 1 2 3\n"), ": a line of '");

@@ -11,7 +11,7 @@
 
 namespace fcl_artic::test {
 
-/// What FCL wants of a motion, for those that only have a pose.
+/// Members that FCL wants of a motion, for motions that only have a pose.
 class PosedMotion : public fcl::MotionBased {
  public:
   using fcl::MotionBased::getCurrentTransform;

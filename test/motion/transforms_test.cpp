@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the types of unit vectors, rotations and rigid transforms claim of themselves, in long doubles.
+// Claims of the types of unit vectors, rotations and rigid transforms, in long doubles.
 #include <cfenv>
 #include <cmath>
 
@@ -87,7 +87,7 @@ TEST(RotationTest, IsWithinItsUlpsOfTheProperOneNextToIt) {
     const auto rotation = inMode(kModes[n % 4], [&] { return Rotation::within12Ulps(R, 1e-4); });
     ASSERT_TRUE(rotation);
     worst = std::max(worst, ulps((rotation->matrix().cast<long double>() - proper(R)).norm() - 1e-25L));
-    // Of R itself only where it is orthonormal to rounding: else Newton's iteration goes to the polar factor.
+    // R itself is compared only if it is orthonormal to rounding: else Newton's iteration goes to the polar factor.
   }
   EXPECT_LE(worst, Rotation::kUlps);
   EXPECT_GT(worst, 1);

@@ -106,7 +106,7 @@ TEST(VariableReach, NoPointGoesFarther) {
   EXPECT_GT(most, 0.95);
 }
 
-/// What stands in the base, seen from the tip, while the first joint alone moves.
+/// A body that stands in the base, seen from the tip, while the first joint alone moves.
 TEST(VariableReach, NothingOfTheBaseGoesFarther) {
   std::mt19937 random(14);
   std::uniform_real_distribution<double> u(-1, 1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Elementary equations against closed forms and against a truth in long double: an advancement from t = 0 that moves on
-// by distance / speed, so that it can't pass a contact, down to gaps of 1e-16 m.
+// Elementary equations against closed forms, and against a truth in long double. The truth is an advancement from t = 0
+// that moves on by distance / speed, so that it can't pass a contact, down to gaps of 1e-16 m.
 #include "narrowphase/elementary.h"
 
 #include <cfenv>
@@ -38,7 +38,7 @@ struct Turn {
   }
 };
 
-/// What a test may take out of the enclosure, to see that it would notice.
+/// Parts that a test may take out of the enclosure, to see that it would notice.
 struct Mutant {
   bool drop_remainder = false, drop_pad = false;
   double noise = 0;             ///< added to the coefficients of the position, and to the pad
@@ -650,8 +650,8 @@ TEST(ElementaryTest, GrazingIsNotCertain) {
   EXPECT_FALSE(refineTriangleContact(pair.a, pair.b, enclosure(pair.turn), {0, 1}, r));
 }
 
-// A vertex passes each of the ground's edges, and an edge each end of another, by less than the floor: no contact,
-// though that can't be told, and so no certain one.
+// A vertex passes each of the ground's edges, and an edge each end of another, by less than the floor. There is no
+// contact, but that can't be decided, so there is no certain one.
 TEST(ElementaryTest, MissBelowTheFloorIsNotCertain) {
   constexpr double kMiss = 0x1p-48;
   for (int turn = 0; turn < 3; ++turn) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The direction of least depth against all directions that can be it: of two polytopes in each other those across a
-// face of their difference, each of which goes through three of its corners.
+// The direction of least depth against all candidates. For two polytopes in each other these are the directions across
+// a face of their difference, and each face goes through three of its corners.
 #include "narrowphase/least_depth.h"
 
 #include <algorithm>

@@ -10,9 +10,9 @@
 namespace fcl_artic {
 namespace numerics_test {
 
-/// The origin swings, c + s sin(k t), while the body turns about `axis` by the angle turn sin(m t) from R on. What it
-/// tells of itself is off by 1e-12 of each number's size, as an author's word may be; or it knows speeds only, and all
-/// derivatives it gives are wrong.
+/// The origin swings, c + s sin(k t), while the body turns about `axis` by the angle turn sin(m t) from R on. Its own
+/// statements are off by 1e-12 of each number's size, as an author's word may be. Or it knows speeds only, and all
+/// derivatives that it gives are wrong.
 struct Sway {
   Eigen::Matrix3d R;
   Eigen::Vector3d c, s, axis;

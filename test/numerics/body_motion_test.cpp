@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Exact points of pairs of moving bodies against quadratics, remainders and pads: joints, slides and turns by
+// Exact points of pairs of moving bodies against quadratics, remainders and pads. There are joints, slides and turns by
 // polynomials of time up to the fifth degree, and motions that only their author knows.
 #include <algorithm>
 #include <cmath>

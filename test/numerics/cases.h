@@ -55,8 +55,8 @@ class ScopedRounding {
   int before_;
 };
 
-/// Coefficients of a tangent of half an angle, up to `degree`: small ones, large ones, such that cross 0 fast or touch
-/// it at `t`, or pass where the bounds of its angle's derivatives have their largest values.
+/// Coefficients of a tangent of half an angle, up to `degree`. Some are small, some large, some cross 0 fast or touch
+/// it at `t`. Some pass where the bounds of its angle's derivatives have their largest values.
 std::vector<double> randomTangent(Random& random, int degree, double t);
 
 /// A transform that is orthonormal to rounding.

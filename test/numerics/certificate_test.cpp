@@ -131,8 +131,8 @@ TEST(Certificate, LowerBoundsAreBelowTheExactGap) {
   EXPECT_GT(no_middle, 0);
 }
 
-/// What GJK finds for whole lanes (narrowphase/swept_difference.h): its support points are those of the certificate,
-/// what it says that separates does, and where it finds none there is none.
+/// GJK's results for whole lanes (narrowphase/swept_difference.h). Its support points are those of the certificate. A
+/// direction that it says separates does so, and if it finds none there is none.
 TEST(Certificate, DirectionsForWholeLanesAreFoundWhereThereIsOne) {
   Random random(seedOf("WholeLanes"));
   const std::vector<const Subject*> tested = subjects();

@@ -37,7 +37,7 @@ inline void setControlBits(std::uint64_t bits) {
 constexpr std::uint64_t kUsualControl = 0;
 constexpr std::uint64_t kFlushing = 1u << 24;  ///< FZ: subnormal results are zero, subnormal operands too
 #else
-/// What C knows: the rounding mode.
+/// The state that C knows: the rounding mode.
 inline std::uint64_t controlBits() {
   return static_cast<std::uint64_t>(std::fegetround());
 }

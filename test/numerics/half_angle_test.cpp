@@ -103,9 +103,9 @@ struct Law {
   Law(const Law&) = delete;
   Law& operator=(const Law&) = delete;
 
-  /// The variable and its first three derivatives, in long double: of q = m (q* + 2 phi) + o, tan(phi) = s, with
-  /// w = cos(phi)^2 these are 2 m times phi' = w s', phi'' = w s'' - 2 s phi'^2 and phi''' = w s''' - 2 s phi' w s'' -
-  /// 2 s' phi'^2 - 4 s phi' phi'' (the derivatives of tan(phi) = s, solved one after the other).
+  /// The variable and its first three derivatives, in long double, for q = m (q* + 2 phi) + o, tan(phi) = s. With w =
+  /// cos(phi)^2 they are 2 m times phi' = w s', phi'' = w s'' - 2 s phi'^2 and phi''' = w s''' - 2 s phi' w s'' - 2 s'
+  /// phi'^2 - 4 s phi' phi''. (These are the derivatives of tan(phi) = s, solved one after the other.)
   void at(long double t, long double* q) const {
     long double d[4] = {0, 0, 0, 0};
     for (std::size_t k = s.size(); k-- > 0;) {
@@ -128,8 +128,8 @@ struct Law {
   }
 };
 
-/// Dense samples of the derivatives against their bounds, over intervals of any length. What a bound has to spare, and
-/// how often a weaker one would break, shows that the samples come near it.
+/// Dense samples of the derivatives against their bounds, over intervals of any length. A bound's room, and how often a
+/// weaker bound would break, show that the samples come near it.
 TEST(HalfAngle, NoSampledDerivativeIsAboveItsBound) {
   Random random(seedOf("HalfAngleBounds"));
   const std::vector<const Subject*> tested = subjects();
@@ -187,7 +187,7 @@ TEST(HalfAngle, BoundsHoldWhereTheirLargestValueLiesWithinTheInterval) {
         for (const Subject* subject : subjects()) {
           subject->boundVariable(law.step, law.query, 0, 1, m);
           for (int n = 0; n < 4; ++n) EXPECT_LE(sampled[n], m[n] * (1 + 1e-13)) << subject->name << " " << n;
-          // Of a straight s each derivative is one product: nothing is given away where the peak is within.
+          // If s is straight, each derivative is one product: nothing is given away where the peak is within.
           if (peak > 0 && peak < 1) {
             EXPECT_GT(sampled[2], 0.999 * m[2]) << half;
           }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Line swept spheres over time intervals: boxes that hold them, and certificates between them and with boxes that stand
-// still, for bodies that are placed so that they touch at a random time of a random lane, to the last few digits.
+// still. Bodies are placed so that they touch at a random time of a random lane, to the last few digits.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -65,7 +65,7 @@ Eigen::Vector3d rounded(const Real3& x) {
   return {x[0].toDouble(), x[1].toDouble(), x[2].toDouble()};
 }
 
-/// What a campaign of touching pairs counts.
+/// Counts of a campaign of touching pairs.
 struct Touching {
   int checks = 0, wrong = 0, wrong_mutant = 0, told_apart = 0;
   /// @param gap  how far the body's segment is from the other body without its radius.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the answers may claim at the edges of the arithmetic: tolerances below the finest split of time, budgets that
-// end early, transforms that are rigid only to rounding.
+// Claims of answers at the edges of the arithmetic: tolerances below the finest split of time, budgets that end early,
+// transforms that are rigid only to rounding.
 #include <cfenv>
 
 #include <fcl/geometry/shape/sphere.h>

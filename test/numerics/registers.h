@@ -13,7 +13,7 @@ enum class Operation { plus, minus, times, over, negated, min, max, abs, sqrt, m
 
 struct RegisterFile {
   const char* name;
-  /// Of a and b, of mulAdd a b + x, of whereGreater x and y too.
+  /// Applies it to a and b; mulAdd is a b + x, and whereGreater takes x and y too.
   void (*apply)(Operation operation, const double* a, const double* b, const double* x, const double* y, double* out);
   void (*set)(double x, double* out);
   unsigned (*greater)(const double* a, const double* b);
@@ -29,7 +29,7 @@ struct RegisterFile {
 
 extern const RegisterFile kRegistersPortable, kRegistersSse2, kRegistersAvx2, kRegistersAvx512, kRegistersNeon;
 
-/// Those that this processor runs.
+/// The registers that this processor has.
 std::vector<const RegisterFile*> registerFiles();
 
 }  // namespace numerics_test

@@ -58,7 +58,7 @@ const double kSpecial[] = {0,
                            kNaN};
 constexpr int kSpecials = sizeof kSpecial / sizeof *kSpecial;
 
-/// Of all sizes, all kinds and both signs.
+/// A number of any size, any kind and either sign.
 double number(Random& random) {
   const double sign = random.chance(0.5) ? 1 : -1;
   switch (random.below(4)) {

@@ -44,7 +44,7 @@ struct CertificateOutput {
   unsigned separated_few;  ///< the same, asked for a few lanes at a time
 };
 
-/// What is found for whole lanes, each searched by itself from CertificateInput::n on.
+/// Results for whole lanes, each searched by itself from CertificateInput::n on.
 struct WholeLanesOutput {
   double least[8];         ///< of n.x over the difference of the moving piece's Bernstein poses and the still piece
   double slack;            ///< what it has to be larger than
@@ -100,7 +100,7 @@ struct Subject {
 
 extern const Subject kSubjectPortable, kSubjectSse2, kSubjectAvx2, kSubjectAvx512, kSubjectNeon;
 
-/// Those that this processor runs.
+/// The subjects that this processor runs.
 std::vector<const Subject*> subjects();
 
 }  // namespace numerics_test

@@ -40,10 +40,11 @@ struct Chain {
 
 PairPads relateSides(const PairInput& in, Side* side) {
   const Chain chain(in);
-  StepBounds none = {};
-  const PairPads pads = relateBodies(in.step_b < 0 ? nullptr : &chain.frames[in.step_b],
-                                     in.step_b < 0 ? none : chain.bounds[in.step_b], in.sweep.first_order, in.inverse_a,
-                                     in.placement_b, in.extents, in.margin, in.d, side[0].m, side[1].m);
+  const StepBounds none = {};
+  const FrameMotion motion = {in.step_b < 0 ? nullptr : &chain.frames[in.step_b],
+                              in.step_b < 0 ? none : chain.bounds[in.step_b], in.sweep.first_order, in.d};
+  const PairPads pads =
+      relateBodies(motion, {in.inverse_a, in.placement_b, in.extents}, in.margin, side[0].m, side[1].m);
   invert(side[0].m, side[1].m);
   for (int s = 0; s < kSides; ++s) {
     side[s].m.makeBernstein();
@@ -122,7 +123,7 @@ void searchWholeLanes(const CertificateInput& in, WholeLanesOutput& out) {
     out.least[lane] = dot(Vec3(in.n), p.w);
     const unsigned bit = 1u << lane;
     GjkResult g;
-    searchNearest(difference, Vec3(in.n), kWitnessAccuracy, out.slack, out.slack, 48, g);
+    searchNearest(difference, Vec3(in.n), {kWitnessAccuracy, out.slack, 48, out.slack}, g);
     if (g.lower > out.slack) {
       out.told |= bit;
       out.certified |= bit & certainlySeparated(s, still, moving, g.n, bit);
@@ -133,7 +134,7 @@ void searchWholeLanes(const CertificateInput& in, WholeLanesOutput& out) {
     body.a = &still;
     body.b = &moving;
     body.pose = {laneOf(s.m.R[0], lane), laneOf(s.m.c[0], lane)};
-    gjk(body, Vec3(in.n), 1e-7, still.radius + moving.radius + in.motion.margin, 48, g);
+    gjk(body, Vec3(in.n), {1e-7, still.radius + moving.radius + in.motion.margin, 48}, g);
     if (g.overlap) continue;
     out.middle |= bit & certainlySeparated(s, still, moving, g.n, bit);
   }
@@ -157,7 +158,8 @@ void sweepLssOf(const Chain& chain, const PairInput& in, const LssInput& lss, Sw
   Body body;
   for (int i = 0; i < 7; ++i) body.lss[i] = lss.lss[i];
   const int step = max(lss.step, 0);
-  sweepLss(lss.step < 0 ? nullptr : &chain.frames[step], chain.bounds[step], in.sweep.first_order, body, in.d, out);
+  const FrameLanes* const frame = lss.step < 0 ? nullptr : &chain.frames[step];
+  sweepLss({frame, chain.bounds[step], in.sweep.first_order, in.d}, body, out);
 }
 
 void boundLssOf(const PairInput& in, const LssInput& lss, BoxOutput& out) {
@@ -183,9 +185,8 @@ unsigned apartFromBox(const PairInput& in, const LssInput& lss, const numerics_t
     box.hi[k] = still.hi[k];
   }
   box.radius = still.radius;
-  Lanes square;
-  Vec3Lanes nearest, l;
-  return certainlyApart(swept, box, still.inverse, in.margin, square, nearest, l);
+  NearestToBox nearest;
+  return certainlyApart(swept, box, still.inverse, in.margin, nearest);
 }
 
 unsigned apartFromLss(const PairInput& in, const LssInput& a, const LssInput& b) {

@@ -378,7 +378,7 @@ TEST(ContinuousMotionValidatorTest, BadInputThrows) {
                std::invalid_argument);
 }
 
-// What the last motion left there, "valid up to 0.7", is no answer to a motion that is none.
+// The last motion's "valid up to 0.7" in that place is no answer to a motion that is none.
 TEST(ContinuousMotionValidatorTest, WhenItThrowsTheStartIsTheLastValidState) {
   const Planning planning(slideWorld(), reals(1));
   const TestState s1(planning.space, {1}), far(planning.space, {1e6}),

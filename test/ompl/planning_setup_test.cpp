@@ -157,7 +157,7 @@ TEST_F(PlanningSetupTest, CullingByVisibilityIsDoneByTheCullerGiven) {
   }
 }
 
-/// What a link may touch says nothing of an obstacle with the name of the other link.
+/// A link's allowed pairs do not hold for an obstacle with the name of the other link.
 TEST_F(PlanningSetupTest, AnObstacleWithALinksNameIsMet) {
   std::string scene = kScene, srdf = kSrdf;
   scene.replace(scene.find("box"), 3, "arm");
@@ -230,7 +230,7 @@ TEST_F(PlanningSetupTest, LimitsThatNoQueryTakesAreNamed) {
 }
 
 TEST_F(PlanningSetupTest, UnknownCellsAreObstaclesOnRequest) {
-  // Of the cube of edge 2 at the origin octants 0, 1 and 7 are known, and 1 and 7 occupied.
+  // In the cube of edge 2 at the origin, octants 0, 1 and 7 are known, and 1 and 7 occupied.
   const std::string cells = write("cells.bt", std::string("# Octomap OcTree binary file\nid OcTree\nsize 4\n"
                                                           "res 0.000030517578125\ndata\n\x09\x80"));
   SetupOptions options;

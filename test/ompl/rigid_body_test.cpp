@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A mesh among meshes, planned for in OMPL's SE3 and SE2 spaces: the way that is proven is the one that interpolate()
-// takes, which FCL's static test at many poses of OMPL's own judges.
+// A mesh among meshes, planned for in OMPL's SE3 and SE2 spaces. The way that is proven is the one that interpolate()
+// takes: FCL's static test at many poses of OMPL's own is the judge.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -122,7 +122,7 @@ TEST(RigidBody, ProvenFreeIsFreeAlongOmplsOwnWay) {
 }
 
 TEST(RigidBody, LinearIsTheWayAndScrewIsAnother) {
-  // Of FCL's motion types: a proof along CCDM_LINEAR and one along CCDM_SCREW, against OMPL's own poses.
+  // Two of FCL's motion types: a proof along CCDM_LINEAR and one along CCDM_SCREW, against OMPL's own poses.
   std::mt19937 random(6);
   std::uniform_real_distribution<double> at(-1, 1);
   const auto geometry = body();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The room that last valid states keep, with margins of pairs' own; and whether a way leads through an obstacle when
-// one motion after the other begins where the last one ended: accepted motions in all kinds of spaces, judged by FCL at
-// many states on OMPL's own way between their ends, with poses that this file works out.
+// The room that last valid states keep, with margins of pairs' own. And whether a way leads through an obstacle when
+// one motion after the other begins where the last one ended. The motions are accepted ones in all kinds of spaces. FCL
+// judges them at many states on OMPL's own way between their ends, with poses that this file works out.
 //
 // FCL_ARTIC_ROOM_CASES: worlds of the campaign; FCL_ARTIC_ROOM_SEED: others.
 #include <gtest/gtest.h>
@@ -74,8 +74,8 @@ constexpr Setting kSettings[] = {{0, -1, false},   {0, 0, false},      {0.05, 0,
                                  {0, -1, true},    {0, 0, true},       {0.05, 0, true},    {0, 0.02, true},
                                  {0.05, -1, true}, {0.05, 0.02, true}, {0.01, 0.04, true}, {0.01, 0.04, false}};
 
-// A motion that ends in contact (x = 3) is known to fewer digits than one that goes on far beyond (x = 9): what the one
-// tells from contact by its last digits, the other does not.
+// A motion that ends in contact (x = 3) is known to fewer digits than one that goes on far beyond (x = 9). So one of
+// the two separates a gap from contact by its last digits, and the other does not.
 TEST(Room, LastValidStateKeepsItWhateverThePairsMargin) {
   for (const Setting& setting : kSettings) {
     const double margin = setting.own >= 0 ? setting.own : setting.margin;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What planners ask, in all four rounding modes.
+// Questions of planners, in all four rounding modes.
 #include <cmath>
 
 #include <fcl/geometry/shape/box.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Random robots with coal's geometries: what the adapter's manager answers, what a manager built by hand answers, and
-// what pinocchio and coal see when they look at many configurations on the way.
+// Random robots with coal's geometries. The answers of the adapter's manager are compared with those of a manager built
+// by hand, and with pinocchio and coal, which look at many configurations on the way.
 #include <cstdlib>
 #include <iostream>
 
@@ -214,8 +214,8 @@ TEST(PinocchioQueries, NeighboursAreCheckedWhereTheyAreListed) {
   EXPECT_EQ(result.first()->body1.name + result.first()->body2.name, "link1tip");
 }
 
-/// Planners list all pairs with an obstacle or a tool that is added, those on its own joint too: no motion has these
-/// touch, and the notes name the ones on a joint that do.
+/// Planners list all pairs with an obstacle or a tool that is added, those on its own joint too. No motion has these
+/// touch, and the notes name pairs on a joint that do.
 TEST(PinocchioQueries, PairsOnOneJointStandStill) {
   Arm arm;
   const auto add = [&](const char* name, pinocchio::JointIndex on) {

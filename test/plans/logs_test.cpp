@@ -3,7 +3,7 @@
 #include <array>
 
 #include "arm.h"
-#include "plans/variables.h"
+#include "kinematics/angles.h"
 
 namespace logs_test {
 
@@ -61,7 +61,7 @@ TEST(PlanLogsTest, UsualLayoutsAreTakenAndSaid) {
                true,
                "its columns are taken so: time = __time, rail = /joint_states/rail/position, hinge = "
                "/joint_states/hinge/position; left out: /joint_states/hinge/effort");
-  // What is in the robot's own words needs no word.
+  // Columns that have the robot's own names need no note.
   EXPECT_EQ(read(tree, "time,hinge,rail\n0,0,0\n5,1.25,0.5\n").notes.size(), 0u);
 }
 
@@ -97,7 +97,7 @@ TEST(PlanLogsTest, ColumnsMayBeSaid) {
   all.columns.pop_back();
   expectContains(refusedWith(tree, log, all), "line 1 has 4 columns, --columns names 3");
   all.columns = {"time", "hinge", "hinge", "-"};
-  expectContains(refusedWith(tree, log, all), "two columns are joint 'hinge'");
+  expectContains(refusedWith(tree, log, all), "line 1: two columns are 'hinge', 1 and 2");
   all.columns = {"time", "hing", "rail", "-"};
   expectContains(refusedWith(tree, log, all), "did you mean 'hinge'");
 }
@@ -119,6 +119,16 @@ TEST(PlanLogsTest, NoRowAndNoNameIsLost) {
   expectContains(refusedWith(tree, "# rail elbow\n0.25,0\n1,0.5\n"), "no joint 'elbow'");
 }
 
+// Of two columns that say the same, nobody knows which one counts.
+TEST(PlanLogsTest, AQuantityOfAJointHasOneColumn) {
+  const KinematicTree tree = armTree();
+  const std::string rows = "0 0 0 0 0 5\n1 0.25 0 0 0 5\n";
+  expectContains(refusedWith(tree, "time hinge rail hinge/velocity rail/velocity hinge_vel\n" + rows),
+                 "line 1: two columns are 'hinge/velocity', 3 and 5");
+  expectContains(refusedWith(tree, "time hinge rail rail_acc hinge_acc rail.acceleration\n" + rows),
+                 "line 1: two columns are 'rail/acceleration', 3 and 5");
+}
+
 // A hand whose rail stays, given once for all logs.
 TEST(PlanLogsTest, JointsThatStayNeedNoColumn) {
   const KinematicTree tree = armTree();
@@ -134,7 +144,7 @@ TEST(PlanLogsTest, JointsThatStayNeedNoColumn) {
             Eigen::Vector2d(0.25, 0.5));
 }
 
-// What may be one thing or another is asked for.
+// If a value has two possible meanings, the reader asks.
 TEST(PlanLogsTest, NothingIsGuessed) {
   const KinematicTree tree = armTree();
   expectContains(refusedWith(tree, "q1,q2,q3\n0,0,0\n1,0,0\n"), "no joint 'q1'");  // more than there are joints

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Plans in collision, mended by the program, judged by samples of FCL: plans of random arms' ways among random posts
+// Plans in collision, mended by the program, judged by samples of FCL. Plans of random arms' ways among random posts
 // and plates go to `certify --mend --clearance --out`, and each plan of the file that it writes is looked at anew. Its
-// ends and the joints' limits are kept, no state along it collides, at steps of 1e-4 rad, and no link is nearer to an
-// obstacle than the clearance that is stated. Prints what was mended and what was not; exit status 1 for a finding, or
-// for fewer mended plans than were asked for.
+// ends and the joints' limits are kept. No state along it collides, at steps of 1e-4 rad. No link is nearer to an
+// obstacle than the stated clearance. Prints what was mended and what was not; exit status 1 for a finding, or for
+// fewer mended plans than were asked for.
 #include <unistd.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What lies between waypoints, beside an evaluation of its own: Bézier curves in long doubles, by de Casteljau.
+// The curves between waypoints, beside an evaluation of its own: Bézier curves in long doubles, by de Casteljau.
 #include <random>
 
 #include "arm.h"
@@ -9,7 +9,7 @@ namespace motion_test {
 namespace {
 
 /// The curve of one joint between two waypoints h apart: that of the degree with these values and derivatives at its
-/// ends, from the derivatives of a Bézier curve of degree n at its ends: n (b1 - b0), n (n - 1) (b2 - 2 b1 + b0).
+/// ends. A Bézier curve of degree n has the derivatives n (b1 - b0) and n (n - 1) (b2 - 2 b1 + b0) at its ends.
 struct End {
   long double q, v, a;
 };

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One plan in every format: the same numbers. What is wrong with a file names waypoint and joint.
+// One plan in every format: the same numbers. An error in a file names waypoint and joint.
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <ctime>
 #include <random>
 
 #include "arm.h"
@@ -131,6 +132,18 @@ TEST(PlanReadersTest, EveryFormatSaysTheSame) {
   EXPECT_EQ(lines[0].name, "line 1 p");
   EXPECT_EQ(lines[1].name, "line 3");
   for (const Plan& plan : lines) expectThePlan(toMotion(tree, plan, {}), plan.name);
+}
+
+// A comment is of all plans of a file, and looked at once. (With the square of the documents, these take 20 s.)
+TEST(PlanReadersTest, TimeToReadGrowsWithTheFile) {
+  constexpr int kPlans = 8000;
+  std::string documents;
+  for (int k = 0; k < kPlans; ++k) documents += "---\n# in degrees\nwaypoints: [[0, 0], [1, 0.5]]\n";
+  const std::clock_t begin = std::clock();
+  const std::vector<Plan> plans = parsePlans(armTree(), documents, Format::yaml);
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 3);
+  ASSERT_EQ(plans.size(), std::size_t{kPlans});
+  EXPECT_EQ(plans.back().other_angles, "line 2 says '# in degrees'");
 }
 
 TEST(PlanReadersTest, YamlAsRosPrintsIt) {
@@ -304,7 +317,7 @@ TEST(PlanReadersTest, PosesOfPlanarAndFloatingJoints) {
   expectContains(refusalOf(arm, message(turned), Format::json), "robot 'arm' has no planar or floating joint 'drive'");
 }
 
-/// What is certified is all that an object holds, for the robot that it names.
+/// All that an object holds is certified, for the robot that it names.
 TEST(PlanReadersTest, AClocksTimesAreCountedFromTheFirst) {
   const KinematicTree tree = armTree();
   const Plan plan = parsePlans(tree, "time,hinge,rail\n1700000000.5,0,0\n1700000002,1,0\n", Format::csv).at(0);
@@ -390,7 +403,7 @@ TEST(PlanReadersTest, PartsOfADisplayFollowEachOther) {
   EXPECT_EQ(carried[0].link, "arm");
 }
 
-/// What follows another joint in the tree stands elsewhere in the message: the plan is of another robot than the tree.
+/// If a joint that follows another one stands elsewhere in the message, the plan is of another robot than the tree.
 TEST(PlanReadersTest, MimicJointsOfTheStartStandWhereTheirMastersHaveThem) {
   const KinematicTree tree = gripperTree();
   const auto message = [](const std::string& names, const std::string& positions) {
@@ -578,7 +591,7 @@ TEST(PlanReadersTest, WhatIsWrittenIsReadAgain) {
     ASSERT_EQ(back.times.size(), 3u);
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(back.times[k], plan.times[k], format == Format::csv ? 0 : 5.1e-10);
   }
-  // What other joints keep comes along.
+  // Values of other joints come along.
   Plan part = plan;
   part.joints = {"hinge"};
   part.positions = part.velocities = part.accelerations = {{0}, {0.5}, {1}};

@@ -20,7 +20,7 @@
 namespace fcl_artic {
 namespace premises_test {
 
-/// What an entry says.
+/// The answer of an entry.
 struct Said {
   std::ostringstream words;     ///< to be the same
   std::vector<double> numbers;  ///< to be the same but for rounding and tolerances

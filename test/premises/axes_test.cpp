@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What lemmas take for unit vectors and proper rotations, given by callers as badly as they can: subnormal and huge
-// axes, turns of hardly any angle, offsets that are orthonormal to nine digits, long products. Bodies that are in each
-// other are never free.
+// Values that lemmas take for unit vectors and proper rotations, given by callers as badly as they can. There are
+// subnormal and huge axes, turns of hardly any angle, offsets that are orthonormal to nine digits, and long products.
+// Bodies that are in each other are never free.
 #include <cfenv>
 #include <cmath>
 #include <limits>
@@ -225,8 +225,8 @@ TEST(Rotations, OffsetsOfLinkMotionsAreMadeOrthonormal) {
   }
 }
 
-/// A joint that mimics another one, with a multiple and an offset that cancel but for the rounding of their sum: by
-/// this much the value is off that is computed. Balls and boxes that reach into each other by half of it are not free.
+/// A joint mimics another one, with a multiple and an offset that cancel but for the rounding of their sum: the
+/// computed value is off by this much. Balls and boxes that reach into each other by half of it are not free.
 TEST(Axes, LinkMotionsOfMimicJointsCountTheTermsThatCancel) {
   for (const JointType type : {JointType::revolute, JointType::prismatic}) {
     const auto fingers = [&](double multiplier, double q) {
@@ -266,7 +266,7 @@ TEST(Axes, LinkMotionsOfMimicJointsCountTheTermsThatCancel) {
   }
 }
 
-/// More than a thousand fixed joints, each of which turns by the same, in rounding modes that err to one side: their
+/// More than a thousand fixed joints, each of which turns by the same, in rounding modes that err to one side. Their
 /// product is farther from a rotation than any one stored rotation is.
 TEST(Rotations, ProductsOfFixedJointsCountWithTheirErrors) {
   using Exact = Eigen::Matrix<long double, 3, 3>;
@@ -281,7 +281,7 @@ TEST(Rotations, ProductsOfFixedJointsCountWithTheirErrors) {
   }
   tree.addLink("end");
   tree.addJoint(makeJoint("last", JointType::prismatic, "l" + std::to_string(kJoints), "end", Vector3d::UnitX()));
-  // Of the rotation next to the stored one, in long doubles.
+  // The error from the rotation next to the stored one, in long doubles.
   Exact R = tree.joint(0).origin.linear().cast<long double>(), product = Exact::Identity();
   for (int k = 0; k < 4; ++k) R += 0.5L * R * (Exact::Identity() - R.transpose() * R);
   for (int i = 0; i < kJoints; ++i) product = product * R;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Every public entry, the readers of files and the texts of messages in all four rounding modes, beside what they say
-// in the usual one: whole numbers of turns, verdicts and words are the same, times and lengths but for rounding and the
-// tolerances; and the caller finds his mode again.
+// Every public entry, the readers of files and the texts of messages in all four rounding modes, beside their answers
+// in the usual one. Whole numbers of turns, verdicts and words are the same. Times and lengths are the same but for
+// rounding and the tolerances. The caller finds his mode again.
 #include <cfenv>
 #include <cmath>
 #include <fstream>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a request adds to every margin reaches own margins, tables and culling, in all kinds of queries: each is
-// compared with the same query of margins that are larger by that much.
+// The margin that a request adds reaches own margins, tables and culling, in all kinds of queries. Each query is
+// compared with the same one of margins that are larger by that much.
 #include <cmath>
 #include <limits>
 #include <random>

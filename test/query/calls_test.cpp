@@ -297,7 +297,7 @@ TEST(Witness, InitialContactAndAnyHaveThePointItself) {
   EXPECT_EQ(some.first()->approach_speed, 0);
 }
 
-// What would dangle does not compile.
+// A call that would leave a dangling reference does not compile.
 template <class T, class = void>
 struct FirstOfTemporary : std::false_type {};
 template <class T>

@@ -122,7 +122,7 @@ TEST(Clearance, LeavesOutWhatTouchesAtTheBegin) {
   const auto trajectory =
       JointTrajectory::linear(*way.tree, {3, 4, 6}, {VectorXd::Zero(1), VectorXd::Ones(1), VectorXd::Constant(1, 2)});
   expectIgnored(way.manager->clearance(trajectory, request));
-  // What is within its margin at the begin is ignored too, and what is not isn't.
+  // A pair within its margin at the begin is ignored too; a pair farther apart isn't.
   floor->setTransform(pose({0, 0, -0.65}));
   way.manager->update();
   EXPECT_TRUE(holds(way.manager->clearance(drive(way, 0, 2), request), 0.05));

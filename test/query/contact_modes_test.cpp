@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the contact modes have in common: which pairs they leave out, how many contacts they report, and that the
-// bracket is joined of all contacts before any of them is dropped.
+// Properties that the contact modes have in common: the pairs that they leave out, and the number of contacts that they
+// report. Also, the bracket is joined of all contacts before any of them is dropped.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Links that are meshes, where any contact will do: it is proven at a pose at which the bodies' bounds are deep in each
-// other, and a mesh deep within another one touches nothing.
+// Links that are meshes, where any contact will do. It is proven at a pose at which the bodies' bounds are deep in each
+// other. A mesh deep within another one touches nothing.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -91,7 +91,7 @@ TEST(CrossingLinks, AnyContactLiesOnBothTriangles) {
 }
 
 /// Plates over each other, all of them askew in their frames, so that the boxes around any two meet and only their
-/// hulls part them, are deep in each other's line swept spheres. None touches.
+/// hulls part them. They are deep in each other's line swept spheres. None touches.
 class Plates {
  public:
   /// @param with_crossing  one more link crosses the last plate: that pair is the deepest.
@@ -161,8 +161,8 @@ TEST(CrossingLinks, ManyDeepOnesAreCheap) {
   EXPECT_LT(any, 30 * first);
 }
 
-/// A body that begins as its own copy shares all faces, edges and vertices with it, of which none can be proven to
-/// touch; right after the start both cross, along a line. That is found without dividing time down to the finest.
+/// A body that begins as its own copy shares all faces, edges and vertices with it, and none of these can be proven to
+/// touch. Right after the start both cross, along a line. That is found without dividing time down to the finest.
 TEST(CrossingLinks, ACopyAtTheStartIsCheapAndCertain) {
   auto ball = std::make_shared<Mesh>();
   fcl::generateBVHModel(*ball, fcl::Sphered(0.2), Isometry3d::Identity(), 24, 24);

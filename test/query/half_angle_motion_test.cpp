@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Motions whose angles go by the tangent of their half: what they are, who refuses them, and that no query misses a
-// contact on them, by FCL's static checks along the way and by polylines next to it.
+// Motions whose angles go by the tangent of their half: their values, who refuses them, and that no query misses a
+// contact on them. FCL's static checks along the way and polylines next to it are the judges.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -265,8 +265,8 @@ struct World {
 
   JointMotion motion() const { return JointMotion::tangentHalfAngle(*tree, q0, q1, reference); }
 
-  /// How far any point is from the polyline of n chords of the motion at most, to the first order, twice taken: |q''|
-  /// of an angle is at most 1.3 s'^2, a chord leaves the arc by an eighth of it times 1/n^2.
+  /// A bound on any point's distance from the polyline of n chords of the motion, to the first order, taken twice. An
+  /// angle has |q''| of at most 1.3 s'^2, and a chord leaves the arc by an eighth of it times 1/n^2.
   double leavesPolyline(int n) const {
     double sum = 0;
     for (int v = 0; v < tree->dof(); ++v) {
@@ -316,8 +316,8 @@ CertifiedRequest requestOf(ContactMode mode, Method method = Method::standard) {
   return request;
 }
 
-/// All ways of asking against FCL's static checks of 129 poses: none misses a contact, none is late, and where contact
-/// is proven the bodies are in contact, up to their skin.
+/// All ways of asking against FCL's static checks of 129 poses: none misses a contact, and none is late. If contact is
+/// proven, the bodies are in contact, up to their skin.
 TEST(TangentHalfAngle, NoQueryMissesWhatFclFindsAlongTheLaw) {
   std::mt19937_64 random(7);
   constexpr int kSamples = 128, kWorlds = 400;
@@ -361,7 +361,8 @@ TEST(TangentHalfAngle, NoQueryMissesWhatFclFindsAlongTheLaw) {
   EXPECT_GT(free, kWorlds / 5);
 }
 
-/// What is free with a margin that pays for the chords is free along them, and the other way round; contact likewise.
+/// If the motion is free with a margin that pays for the chords, the chords are free, and the other way round; contact
+/// likewise.
 TEST(TangentHalfAngle, AFinePolylineNextToItSaysTheSame) {
   std::mt19937_64 random(11);
   constexpr int kPieces = 200, kWorlds = 60;

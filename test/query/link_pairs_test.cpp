@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What pairs of links do over all joint values, and what queries make of it.
+// Pairs of links over all joint values, and their use by queries.
 #include "fcl_artic/link_pairs.h"
 
 #include <cmath>
@@ -26,8 +26,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Two turns in a plane, arms of 1 m and 0.5 m: a ball on the base, and one on the hand that comes within 0.5 m of the
-/// base's middle where the second turn is at pi, and no nearer.
+/// Two turns in a plane, with arms of 1 m and 0.5 m. There is a ball on the base, and one on the hand. The hand's ball
+/// comes within 0.5 m of the base's middle where the second turn is at pi, and no nearer.
 ///
 ///     base (+)------ 1 ------(elbow)--- 0.5 ---(+) hand
 class PlanarArm {
@@ -202,8 +202,8 @@ TEST(LinkPairs, ProofsAreOfTheVeryGeometry) {
   manager.update();
   EXPECT_TRUE(isFree());
 
-  // Of another manager they serve if all is the same by content, and do no harm if it is not.
-  // (That a pair is left out does not tell: its table knows as much. What is said of allowed pairs does.)
+  // They serve another manager if all is the same by content, and do no harm if it is not. (That a pair is left out
+  // does not tell: its table knows as much. The count of allowed pairs does.)
   const auto proven = [&](ArticulatedCollisionManager other) {
     other.setLinkPairProofs(proofs);
     other.allow("base", "hand");
@@ -369,7 +369,7 @@ TEST(LinkPairs, ATrajectoryCountsEachPairThatAnyPieceLeavesUnproven) {
 }
 
 TEST(LinkPairs, GeometriesBoundInAnyOrderTakeTheirOwnValues) {
-  // Of the one pair some paths begin at a and some at b.
+  // There is one pair, but some paths begin at a and some at b.
   auto tree = std::make_shared<KinematicTree>("t");
   for (const char* link : {"root", "a", "b"}) tree->addLink(link);
   tree->addJoint(Joint::prismatic("ja", "root", "a", Vector3d::UnitX(), Isometry3d::Identity(), 5, 6));

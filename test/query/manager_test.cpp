@@ -322,7 +322,7 @@ TEST(Manager, RigidlyAttachedLinksAreCheckedWhereSomebodyAsks) {
   EXPECT_EQ(r.status, Status::free);
 }
 
-// What a planar joint moves about on the ground can run into it: balls of 0.1, from 1 apart to 0.
+// A body that a planar joint moves about on the ground can run into it: balls of 0.1, from 1 apart to 0.
 TEST(Manager, GroundIsNoNeighbourOfWhatAPlanarJointMoves) {
   auto tree = std::make_shared<KinematicTree>("rover");
   for (const char* link : {"ground", "rover"}) tree->addLink(link);

@@ -79,7 +79,7 @@ TEST(Margin, OfAnObstacleCountsForItAlone) {
   way.manager->setup();
   EXPECT_TRUE(touchesAt(way.run(0, 2), wallTime(0)));
   EXPECT_TRUE(touchesAt(way.run(0, 2, withMargin(0.05)), wallTime(0.05)));
-  // Of two the larger.
+  // If two bodies have margins, the larger counts.
   way.manager->setMargin("cart", 0.35);
   way.manager->setup();
   EXPECT_TRUE(touchesAt(way.run(0, 2), postTime(0.35)));
@@ -104,7 +104,8 @@ TEST(Margin, OfAPairComesFirst) {
   EXPECT_TRUE(touchesAt(way.run(0, 2), postTime(0.32)));
 }
 
-// What is near by construction, as neighbours two joints apart, keeps a little margin while all else has a large one.
+// A pair that is near by construction, as neighbours two joints apart, keeps a little margin while all else has a large
+// one.
 TEST(Margin, OfTwoLinks) {
   auto tree = std::make_shared<KinematicTree>("crane");
   for (const char* name : {"rail", "cart", "mast", "hook"}) tree->addLink(name);
@@ -269,8 +270,8 @@ TEST(Margin, FeaturesAreNamedWhereThePairHasNone) {
   }
 }
 
-// Balls of a turning arm among balls, with and without margins of their own: the first time at which any comes as near
-// as it may not, sampled in closed form.
+// Balls of a turning arm among balls, with and without margins of their own. The first time at which any comes nearer
+// than its margin is sampled in closed form.
 TEST(Margin, RandomPairsAgainstDenseSampling) {
   std::mt19937_64 random(7);
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A motion is refused by every tree but those with its own joint variables: other numbers of the same count would be
+// A motion is refused by every tree but those with its own joint variables. Other numbers of the same count would be
 // read as other joints', or beyond the motion's end.
 #include <functional>
 #include <random>
@@ -59,7 +59,7 @@ struct Asked {
     manager.registerObject(wall.get(), "wall");
     manager.setup();
   }
-  /// What each way says when it refuses; empty where it does not.
+  /// The message of each way that refuses; empty if it does not.
   std::vector<std::string> refusals(const JointMotion& motion) const {
     const std::vector<std::function<void()>> ways = {
         [&] {

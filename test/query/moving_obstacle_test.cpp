@@ -42,7 +42,7 @@ MovingPtr goes(const std::shared_ptr<fcl::CollisionGeometryd>& geometry, const I
                                                             to.translation(), Vector3d(0, 0, 0)));
 }
 
-/// What FCL asks of a motion and nobody needs here.
+/// Members that FCL asks of a motion and nobody needs here.
 struct PlainMotion : fcl::MotionBased {
   bool integrate(double) const override { return true; }
   double computeMotionBound(const fcl::BVMotionBoundVisitor<double>&) const override { return 0; }
@@ -210,7 +210,7 @@ TEST(MovingObstacle, ComesChangesAndGoes) {
   cart.manager->getObjects(all);
   EXPECT_EQ(all, std::vector<const Moving*>{obstacle.get()});
 
-  // What the caller does with FCL's motion between queries has no effect; a new motion has, from update() on.
+  // A caller's use of FCL's motion between queries has no effect; a new motion has, from update() on.
   obstacle->getMotion()->integrate(0.4);
   EXPECT_TRUE(touchesAt(cart.run(0, 0), 0.85));
   auto* motion = dynamic_cast<fcl::TranslationMotiond*>(obstacle->getMotion());

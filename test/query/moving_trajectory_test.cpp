@@ -175,8 +175,8 @@ TEST(MovingTrajectory, CutIntoPiecesItIsTheSame) {
   EXPECT_GT(free, 50);
 }
 
-// What touches at the begin, which a clearance leaves out, is found along the first piece: an obstacle that moves has a
-// hundredth of its motion there.
+// A pair that touches at the begin, which a clearance leaves out, is found along the first piece: a moving obstacle has
+// a hundredth of its motion there.
 TEST(MovingTrajectory, ClearancesLookAtTheBeginInTheFirstPiecesTime) {
   struct Asked : Falling {
     State state(double t) const override {

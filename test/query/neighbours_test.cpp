@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Neighbours: links with at most one moving joint between them. What the manager makes of them where nobody says
-// whether they may touch, and who says so instead.
+// Neighbours: links with at most one moving joint between them. The manager's rule for them if nobody says whether they
+// may touch, and who can say so instead.
 #include <cmath>
 #include <sstream>
 
@@ -177,7 +177,7 @@ TEST(Neighbours, WhoIsAskedForIsChecked) {
   EXPECT_THROW(manager.setAllowedCollisions(wrong), std::invalid_argument);
 }
 
-// Of allowed neighbours `free` says nothing: those that touch at some values only count.
+// `free` does not cover allowed neighbours: those that touch at some values only are counted.
 TEST(Neighbours, AllowedOnesCountWhereTheyTouchAtSomeValuesOnly) {
   ArticulatedCollisionManager post = PostRobot().manager(true, 0.01), housing = PostRobot().manager(false, -0.01);
   for (ArticulatedCollisionManager* manager : {&post, &housing}) {
@@ -211,7 +211,7 @@ TEST(Neighbours, AreCheckedForTouchingUnlessThePairHasAMargin) {
   EXPECT_EQ(manager.continuousCollide(motion, wide).status, Status::contact);
 }
 
-// What was found is looked for again where the geometry has changed, also in place.
+// Neighbours are judged anew if the geometry has changed, also in place.
 TEST(Neighbours, AreLookedAtAgainWhenTheyChange) {
   const auto shape = std::make_shared<fcl::Boxd>(0.2, 0.2, 0.2);
   const auto base = std::make_shared<fcl::CollisionObjectd>(shape);

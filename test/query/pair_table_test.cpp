@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Tables of two links over two joint variables. A ball, carried by two joints, beside a slanted plate that is the
-// robot's base: the ball never leaves the plate's box in the world, so that a pair which is left out is left out by the
-// table. Distances in closed form.
+// robot's base. The ball never leaves the plate's box in the world, so if the pair is left out, the table has done it.
+// Distances in closed form.
 #include <cmath>
 #include <iostream>
 #include <random>
@@ -261,7 +261,7 @@ TEST(PairTable, HoldsForThePairsMargin) {
   EXPECT_DOUBLE_EQ(check(arm, lower, upper, 0).left_out, before);
 }
 
-/// What a request asks for beyond the table's margin is not looked up; least of all by a clearance.
+/// If a request asks for more than the table's margin, the table is not used; least of all by a clearance.
 TEST(PairTable, MarginsOfRequestsAreTheirOwn) {
   const Arm arm(turn(-1.5, 2.5, kAxis1), turn(-2, 1, kAxis2));
   std::mt19937 random(5);
@@ -368,8 +368,8 @@ TEST(PairTable, NothingAtTheBorderIsLeftOut) {
 
 namespace {
 
-/// A ball over a disk whose top is the plane z = 0 and which is the robot's base: a cart along the disk, which takes
-/// the ball farthest, then joints from "cart" to "tip", the ball's centre. The ball never comes near the disk's rim.
+/// A ball over a disk whose top is the plane z = 0, and which is the robot's base. A cart along the disk takes the ball
+/// farthest; then come joints from "cart" to "tip", the ball's centre. The ball never comes near the disk's rim.
 struct OverDisk {
   std::shared_ptr<KinematicTree> tree = std::make_shared<KinematicTree>("over disk");
   static constexpr double kRadius = 0.0005;
@@ -422,11 +422,11 @@ void expectNoneFreeInTheDisk(const OverDisk& arm, int states, const Draw& draw) 
 
 }  // namespace
 
-/// The lever of a turn grows along the slide that it carries: with a third variable the table goes as far beyond the
+/// The lever of a turn grows along the slide that it carries. With a third variable the table goes as far beyond the
 /// slide's limits as its range is wide, and rows have to pay for the lever there.
 TEST(PairTable, ATurnsLeverReachesAsFarAsTheSlideAfterIt) {
-  // Of what the rows pay for a turn little is left over when the rows are wide: its joint has wide limits, and a
-  // follower's multiplier keeps the cells from being one turn.
+  // Little is left over of the margin that rows pay for a turn if the rows are wide. So its joint has wide limits, and
+  // a follower's multiplier keeps the cells from being one turn.
   Joint drive = limited(makeJoint("drive", JointType::revolute, "disk", "wheel", Vector3d::UnitX()), -100, 100);
   Joint follower = makeJoint("turn", JointType::revolute, "cart", "arm", Vector3d::UnitY(), pose({0, 0, 0.0575}));
   follower.mimics = true;

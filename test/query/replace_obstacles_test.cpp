@@ -179,7 +179,7 @@ TEST(ReplaceObstacles, ThreadsHaveAManagerEach) {
   EXPECT_EQ(found, wanted);
 }
 
-// What was read before is read again where it is another by now, also in place.
+// An object that was read before is read again if it has changed, also in place.
 TEST(ReplaceObstacles, ObjectsThatStayAreReadAgainWhereTheyChanged) {
   auto tree = sliderTree({"rail", "slide"});
   ArticulatedCollisionManager manager(tree);

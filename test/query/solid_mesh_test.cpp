@@ -140,7 +140,7 @@ TEST(SolidMesh, NormalIsTheShortestWayOut) {
   EXPECT_NEAR((r.contacts[0].point - Vector3d(0.6, 0, 0)).norm(), 0, 1e-9);
 }
 
-// What is not within is as before: from x = 3 to 0 the ball of 0.1 meets the cube's side x = 1 at 3 - 3 t = 1.1.
+// A ball that is not within is as before: from x = 3 to 0 the ball of 0.1 meets the cube's side x = 1 at 3 - 3 t = 1.1.
 TEST(SolidMesh, SurfacesMeetAsBefore) {
   for (const Geometry& geometry : {Geometry(cubeMesh(1)), Geometry(solidCube(1))}) {
     Cart cart;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What callers change in their own hands, geometry in place above all, is what the next setup() or update() reads.
+// The next setup() or update() reads changes that callers make by themselves, of geometry in place above all.
 #include <functional>
 #include <limits>
 

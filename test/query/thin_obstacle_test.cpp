@@ -78,8 +78,8 @@ TEST(ThinObstacle, ThroughAnOpeningItTouchesNothing) {
   }
 }
 
-/// Rods, boards and capsules anywhere, through and beside the tube: both modes say the same, and what any contact is
-/// proven by is a point of the solid and of the triangle that is named, or else one within the closed tube.
+/// Rods, boards and capsules anywhere, through and beside the tube. Both modes give the same verdict. The proof of any
+/// contact is a point of the solid and of the named triangle, or else a point within the closed tube.
 TEST(ThinObstacle, AnyContactIsOneOfBothBodies) {
   std::mt19937 random(5);
   const auto in = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
@@ -127,8 +127,8 @@ TEST(ThinObstacle, AnyContactIsOneOfBothBodies) {
   EXPECT_GT(free, 500);
 }
 
-/// What is well within a large mesh's hull is looked at piece by piece at once: its hull would be followed in vain.
-/// (Two balls apart: where their hull's rounding reaches, it is still deep.)
+/// A body well within a large mesh's hull is looked at piece by piece at once: its hull would be followed in vain. (Two
+/// balls apart: where their hull's rounding reaches, it is still deep.)
 TEST(ThinObstacle, WithinALargeMeshHullsAreNotFollowed) {
   auto shells = std::make_shared<Mesh>();
   shells->beginModel();
@@ -191,8 +191,8 @@ class Press {
   std::shared_ptr<fcl::CollisionObjectd> base_, arm_, table_;
 };
 
-/// A base rests on a table in which a link is deep from the start on: the one ends the search at once, the other must
-/// not have all of its triangles asked then.
+/// A base rests on a table in which a link is deep from the start on. The base ends the search at once; then not all
+/// triangles of the link must be asked.
 TEST(Resting, WhatIsDeepBesideItAtTheStartIsCheap) {
   const Press press(-0.02);
   for (const double way : {0.01, 0.1, 1.0}) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A query that throws leaves nothing of the previous answer: no `free`, no time, no contact, with every kind of bad
-// input and with what callers' own code throws in the midst of it.
+// A query that throws leaves nothing of the previous answer: no `free`, no time, no contact. This holds with every kind
+// of bad input, and if callers' own code throws in the midst of it.
 #include <cmath>
 #include <functional>
 #include <limits>

@@ -29,7 +29,7 @@ std::vector<Span> partsOf(const std::string& text, Random& random) {
   if (kind == 0) between("\n\r");
   if (kind == 1) between(" \t\n\r\",<>=/");
   if (kind == 2) {
-    // What is between brackets; between the beginning and the end of an element.
+    // The text between brackets; between the beginning and the end of an element.
     for (std::size_t at = 0; at < text.size(); ++at) {
       const char open = text[at], close = open == '{' ? '}' : open == '[' ? ']' : '\0';
       if (close) {

@@ -19,7 +19,7 @@ std::string shown(const Item& item) {
   return out;
 }
 
-/// What is not read as it was written; empty: nothing.
+/// The part that is not read as it was written; empty: none.
 std::string differenceOf(const Reading& read, const Reading& written, double tolerance) {
   double size = 1;
   for (const Item& item : written) {
@@ -37,7 +37,7 @@ std::string differenceOf(const Reading& read, const Reading& written, double tol
   return {};
 }
 
-/// What a faulty reader would give.
+/// Readings that a faulty reader would give.
 const std::vector<std::pair<std::string, std::function<void(Reading&)>>>& faultsOfReadings() {
   static const std::vector<std::pair<std::string, std::function<void(Reading&)>>> all{
       {"drops the last one", [](Reading& r) { r.pop_back(); }},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random files of all formats that are read: what a writer wrote, by its own arithmetic, against what a reader gives;
-// faults of readers, which must be seen; files whose structure is changed.
+// Random files of all formats that are read. A writer's data, by its own arithmetic, are compared with a reader's.
+// Faults of readers must be seen. Some files have their structure changed.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,8 @@ struct FileFormat {
   std::function<RandomFile(Random&)> write;
   /// Reads a file that stands in its folder. @throws std::exception where it is refused.
   std::function<Reading(const RandomFile&, const std::string& path)> read;
-  /// What a faulty reader would pass over: its name, and a regular expression whose last match is left out of the file.
+  /// Parts that a faulty reader would pass over: a name, and a regular expression whose last match is left out of the
+  /// file.
   std::vector<std::pair<std::string, std::string>> faults = {};
   bool errors_name_the_file = true;
 };

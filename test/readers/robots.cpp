@@ -310,7 +310,7 @@ RandomFile writeSrdf(Random& random) {
   file.content = "<?xml version=\"1.0\"?>\n<robot name='r'>\n";
   for (const std::string& e : elements) file.content += e + (coin(random) ? "\n" : " ");
   file.content += "</robot>\n";
-  // What is named wins over defaults, and disabled over enabled.
+  // Named pairs win over defaults, and disabled over enabled.
   for (const auto& p : enabled) defaults.erase(p);
   defaults.insert(disabled.begin(), disabled.end());
   for (const auto& [a, b] : defaults) file.reading.push_back({"may touch: " + a + " " + b, {}});

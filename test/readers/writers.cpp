@@ -403,7 +403,7 @@ Matrix shift(Real x, Real y, Real z) {
   m.at[0][3] = x, m.at[1][3] = y, m.at[2][3] = z;
   return m;
 }
-/// Of a quaternion of any length above 0.
+/// The rotation of a quaternion of any length above 0.
 Matrix turned(Real x, Real y, Real z, Real w) {
   const Real n = std::sqrt(x * x + y * y + z * z + w * w);
   x /= n, y /= n, z /= n, w /= n;

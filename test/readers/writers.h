@@ -25,13 +25,13 @@ const T& oneOf(Random& random, const std::vector<T>& list) {
 
 struct WrittenFile {
   std::string name;                             ///< With its ending.
-  std::string content;                          ///< Of the file.
+  std::string content;                          ///< The file's bytes.
   std::map<std::string, std::string> more;      ///< Files that it names.
   std::vector<std::array<Place, 3>> triangles;  ///< In the order of the file.
-  std::size_t points = 0, lines = 0;            ///< Of a mesh file.
-  std::vector<Place> cloud;                     ///< Of a file of points.
+  std::size_t points = 0, lines = 0;            ///< Counts of a mesh file.
+  std::vector<Place> cloud;                     ///< Points of a file of points.
   bool turn = false;                            ///< Whether what is up is to become z.
-  /// Of the largest coordinate: what the writer's and the reader's places may differ by; 0: nothing.
+  /// Part of the largest coordinate by which the writer's and the reader's places may differ; 0: not at all.
   double tolerance = 0;
 };
 

@@ -104,7 +104,7 @@ TEST(Levels, TwoLinksAreTestedOncePerSubIntervalOfTheFinerOne) {
   }
 }
 
-/// What is far from everything is bounded over the whole motion only.
+/// A link that is far from everything is bounded over the whole motion only.
 TEST(Levels, FarLinksAreNotRefined) {
   const auto box = redon_test::boxMesh(0.05, 0.05, 0.5);
   Arm arm({{JointType::revolute, Vector3d::UnitX(), Vector3d::Zero(), box}}, true);
@@ -262,8 +262,8 @@ TEST(Levels, LinksThatMeetLinksHaveTheSameAnswerSeenFromTheWorld) {
   EXPECT_GE(free, 50);
 }
 
-/// Leaf pairs that are solved in several sets, for their memory: the first contact is that of all sets, and progress
-/// tells of no time that a later set has a contact before.
+/// Leaf pairs that are solved in several sets, for their memory. The first contact is that of all sets, and progress
+/// never reports a time after a later set's contact.
 TEST(Levels, LeafPairsOfSeveralSetsHaveOneFirstContact) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> uniform(-1, 1);

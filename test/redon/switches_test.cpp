@@ -21,7 +21,7 @@ using fcl_artic::ContactMode;
 using fcl_artic::MotionEnclosure;
 using fcl_artic::Status;
 
-/// Of each family so many scenes.
+/// Number of scenes of each family.
 std::uint64_t scenes() {
   return campaign::fromEnvironment("FCL_ARTIC_REDON_SWITCHES", 3);
 }
@@ -72,7 +72,7 @@ TEST(Switches, AllCombinationsAgreeInAllModesAndWithinBudgets) {
         request.redon = switches[i];
         request.max_contacts = 10;
         request.mode = static_cast<ContactMode>(i % 3);
-        // What has no end without levels (0) ends by the larger budget.
+        // A motion that has no end without levels (0) ends by the larger budget.
         for (const std::uint64_t budget : {std::uint64_t{200000}, std::uint64_t{1} << (seed + i) % 14}) {
           request.work_budget = budget;
           const CertifiedResult result = ask(request);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the paper's method has not examined is not free: three links that each slide 1 m along x towards an obstacle of
-// their own, so that every contact has its time in closed form.
+// A pair that the paper's method has not examined is not free. Three links each slide 1 m along x towards an obstacle
+// of their own, so every contact has its time in closed form.
 //
 //     link 0  []-->     | mesh      t = times[0]
 //     link 1  []-->     | mesh      t = times[1]

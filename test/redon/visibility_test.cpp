@@ -88,7 +88,7 @@ TEST(RedonVisibility, VolumesHoldTheLink) {
   EXPECT_LT(least_room, 3e-4) << "not just large";
 }
 
-/// A wall of many triangles in one mesh, and a link that is near one corner of it: the rest of the wall is not looked
+/// A wall of many triangles in one mesh, and a link that is near one corner of it. The rest of the wall is not looked
 /// at, and the answer is that without the stage.
 TEST(RedonVisibility, NodesThatAreFreeAreNotTraversed) {
   std::vector<Vector3d> corners;

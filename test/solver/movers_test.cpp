@@ -131,8 +131,8 @@ TEST(MoverRows, HoldEachPairOnce) {
   EXPECT_EQ(found.size(), pairs.size() - 100);
 }
 
-/// Whatever the number of movers, the order of pairs, and the part of them that is asked for: pairs that touch in a
-/// part of the motion are left there, and most others are not.
+/// This holds for any number of movers, any order of pairs, and any part of them that is asked for. Pairs that touch in
+/// a part of the motion are left there, and most others are not.
 TEST(StageOne, LeavesAllPairsOfMoversThatTouch) {
   std::mt19937 random(13);
   int touching = 0, left = 0, asked = 0;

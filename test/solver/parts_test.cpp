@@ -324,7 +324,7 @@ struct BallsInside {
         parts[i].hi[k] = reach;
         for (int n = 0; n < 8; ++n) parts[i].points[k][n] = n / 2 == k ? (n % 2 ? reach : -reach) : 0;
       }
-      for (int n = 0; n < InnerBalls::kMost; ++n) balls[i].radius[n] = -1e300;
+      for (int n = 0; n < InnerBalls::kMax; ++n) balls[i].radius[n] = -1e300;
       balls[i].radius[0] = radius[i];
       balls[i].count = 1;
       balls[i].reach = radius[i];
@@ -523,7 +523,8 @@ TEST(StageOne, TakesWhatAdvisorsClear) {
   EXPECT_EQ(world.open.size(), 0);
 }
 
-/// Of two bodies that move the advisor is given what B sweeps where A stands still: a ball that goes straight along z.
+/// For two bodies that move, the advisor is given the volume that B sweeps in a frame in which A stands still: a ball
+/// that goes straight along z.
 TEST(StageOne, OffersPairsThatBothMoveWhereOneStandsStill) {
   TwoBalls world(-2, 2);
   world.asPair();

@@ -2,8 +2,8 @@
 //
 // Every proven cell of a table looked at again: motions over the cell by the engine, of the pair alone, with no table
 // and in the robot's own variables. They run along the first variable at the corners of the others' cells, where a
-// lever that was taken too short shows first, along diagonals, and straight from anywhere in a cell to anywhere. Cells
-// are taken from the tables, and nothing else is: no lever, no margin but the table's.
+// lever that was taken too short shows first. They also run along diagonals, and straight from anywhere in a cell to
+// anywhere. Cells are taken from the tables, and nothing else is: no lever, no margin but the table's.
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>

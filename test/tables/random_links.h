@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Random pairs of links with levers of every kind between them: turns that carry slides, slides that carry turns,
-// followers by whole, broken and large multiples, of one master several times, joints on both sides of a common
-// ancestor, wide and narrow limits and none, one to three variables, the third one mostly of little effect.
+// Random pairs of links with levers of every kind between them. There are turns that carry slides, slides that carry
+// turns, followers by whole, broken and large multiples, and several followers of one master. There are joints on both
+// sides of a common ancestor, wide and narrow limits and none, and one to three variables, the third one mostly of
+// little effect.
 #pragma once
 
 #include <algorithm>
@@ -63,9 +64,9 @@ struct RandomLinks {
     bool slides;
   };
 
-  /// A ball on a slide, and that on a turn, over a plate, along which a cart takes it all: where the slide is far out
-  /// the turn takes the ball at the plate, and rows of cells are so wide that all of this way has to be paid for. Or
-  /// the turn follows the slide.
+  /// A ball on a slide, and that on a turn, over a plate, along which a cart takes it all. Where the slide is far out
+  /// the turn takes the ball at the plate. Rows of cells are so wide that all of this way has to be paid for. Or the
+  /// turn follows the slide.
   void buildTight(pairs::Random& random) {
     using fcl_artic::JointType;
     const auto joint = [&](const char* name, JointType type, const std::string& parent, const std::string& child,
@@ -172,7 +173,7 @@ struct RandomLinks {
     on_b = pose(random, bare_ || random.chance(0.5) ? 0 : 0.2);
     const VectorXd q = draw(random);
     const Isometry3d at = tree->linkPose(tree->linkId("a"), q).inverse() * tree->linkPose(tree->linkId("b"), q) * on_b;
-    // What has a face reaches with it to about where the other link's middle gets.
+    // A body with a face reaches with it to about where the other link's middle gets.
     const double x = random.logUniform(0.1, bare_ ? 30 : 3), y = random.logUniform(0.1, bare_ ? 30 : 3),
                  z = random.logUniform(0.005, 0.3);
     const int shape = bare_ && random.chance(0.8) ? 1 : random.below(3);

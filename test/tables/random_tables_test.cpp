@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Tables against none: random motions of two links with levers of every kind between them, asked with the table that
-// their set-up made and without. What is free by the table and in proven contact without is a fault.
+// their set-up made and without. A motion that is free by the table and in proven contact without it is a fault.
 //
 // Without: a table holds for its pair's own margin, or for none. A manager whose pair has no margin of its own, asked
-// with a request's, looks nothing up; where the pair keeps none, 1e-12 m are asked for. (What the table alone decides
-// is counted by what is left to the query then: were both to look it up, that count would be 0.)
+// with a request's, looks nothing up; where the pair keeps none, 1e-12 m are asked for. (The pairs left to the query
+// then are those that the table alone decides: were both to look it up, that count would be 0.)
 #include <cstdlib>
 #include <iostream>
 
@@ -49,7 +49,7 @@ class Both {
   bool leftOut(const VectorXd& q) const {
     return with(linear(q, q), ContactMode::any).statistics.pairs_after_culling == 0;
   }
-  /// What else than a table could leave the pair out does not.
+  /// Whether the table alone leaves the pair out: nothing else does.
   bool byTableAlone(const JointMotion& motion) const {
     return without(motion, ContactMode::any).statistics.pairs_after_culling > 0;
   }
@@ -72,8 +72,8 @@ struct Counts {
   std::uint64_t queries = 0, free = 0, contact = 0, by_table = 0, near = 0, wrong = 0, unlike = 0;
 };
 
-/// From a state that the table leaves out to one that it leaves out as well and where the links are as near as may be:
-/// that is where cells are that should not be proven.
+/// From a state that the table leaves out to another such state, in which the links are as near as may be. There the
+/// cells are that should not be proven.
 VectorXd nearest(const Both& both, const RandomLinks& links, pairs::Random& random, VectorXd q) {
   constexpr double kGaps[] = {0.2, 0.1, 0.06, 0.04, 0.03, 0.02, 0.015, 0.01, 0.007, 0.005, 0.003, 0.002, 0.001, 0};
   constexpr int kLevels = sizeof kGaps / sizeof *kGaps;

@@ -97,7 +97,7 @@ struct LongLinks {
   std::string first_;
 };
 
-/// What both kinds of links are to the test.
+/// Both kinds of links as the test sees them.
 struct Links {
   std::shared_ptr<const KinematicTree> tree;
   std::shared_ptr<const fcl::CollisionObjectd> a, b;
@@ -208,11 +208,11 @@ void run(const Links& links, pairs::Random& random, Counts& counts) {
     const bool proven = finding.kind == LinkPairKind::never;
     (proven ? counts.proven : counts.unproven) += 1;
     counts.near += proven && less > 0.8;
-    // What is said of how near they come is an upper bound, reached in the configuration.
+    // The stated least distance is an upper bound, reached in the configuration.
     if (std::isfinite(finding.nearest) && finding.configuration.size() > 0) {
       EXPECT_LE(links.leastDistance(finding.configuration), finding.nearest + kFclError);
     }
-    // What is found in contact is so: the configuration lies within the limits, and FCL agrees.
+    // A pair that is found in contact is so: the configuration lies within the limits, and FCL agrees.
     if (finding.kind == LinkPairKind::always || finding.kind == LinkPairKind::sometimes) {
       ASSERT_EQ(finding.configuration.size(), links.tree->dof());
       EXPECT_LE(links.leastDistance(finding.configuration), nearest * less + kFclError);
@@ -227,8 +227,8 @@ void run(const Links& links, pairs::Random& random, Counts& counts) {
 
 }  // namespace
 
-/// Two arms on one root, in a plane and across the arms' turns: what each reaches at most is a sum of lengths, and so
-/// is the smallest distance of their ends. Any number of turns, slides and joints that follow others are on the way.
+/// Two arms on one root, in a plane and across the arms' turns. The reach of each is a sum of lengths, and so is the
+/// smallest distance of their ends. Any number of turns, slides and joints that follow others are on the way.
 ///
 ///     D (= reaches of a and b, and the gap)
 ///     o--turn--slide--turn-- ... (a)   gap   (b) ... --turn--o
@@ -323,7 +323,7 @@ TEST(RangeProofs, KeepWhatFclFindsNearest) {
 }
 
 // The arms' ends come as near as the gap where both are stretched towards each other, and balls about the first turns
-// hold all that they reach: a proof of more is false, and one of a little less needs next to no work. Joints go 1/1000
+// hold all that they reach. A proof of more is false, and one of a little less needs next to no work. Joints go 1/1000
 // of their ranges beyond their limits, which the proof pays for.
 TEST(RangeProofs, OfStretchedArmsEndAtTheirReach) {
   const std::uint64_t n = asked("FCL_ARTIC_RANGE_LINKS", 400), seed = asked("FCL_ARTIC_SEED", 1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Random motions: what the contact manager answers, what the library answers for each pair of shapes by itself, and
-// what tesseract's own discrete manager sees when it looks at many poses on the way.
+// Random motions. The contact manager's answers are compared with the library's for each pair of shapes by itself, and
+// with tesseract's own discrete manager, which looks at many poses on the way.
 #include <cstdlib>
 #include <iostream>
 #include <random>

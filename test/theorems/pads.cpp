@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The pads of doc/NUMERICS.md, section 9, as theorems that Gappa proves of the kernel's own formulas. The kernel runs
-// once with numbers that record what is done with them (recorded.h); each record becomes a script that states a bound
-// on its rounding; the bounds come from the kernel's constants. README.md has the list, and what it leaves out.
+// once with numbers that record what is done with them (recorded.h). Each record becomes a script that states a bound
+// on its rounding. The bounds come from the kernel's constants. README.md has the list, and what it leaves out.
 //
 // Symbols: u = 2^-52; x: how far the rotation turns in half an interval, bounded; S: the sum of all sizes; P(x) =
 // (1 + 2.5 x)^2. The pad is u (2U + 160) P S.
@@ -37,8 +37,8 @@ using recording::tape;
 constexpr Real kMore = 1 + 0x1p-20, kMoreOfAll = 1 + 0x1p-17;
 const Real kU = fcl_artic::kUlp.value;
 
-// ---- Shares of kCertificateUlps. What Gappa does not prove is set aside as in NUMERICS: the rounding of d itself 2, a
-// direction longer than 1 by its own rounding 10.
+// ---- Shares of kCertificateUlps. Shares that Gappa does not prove are set aside as in NUMERICS: the rounding of d
+// itself 2, a direction longer than 1 by its own rounding 10.
 constexpr Real kSeparationUlps = 95;  // from the quadratics to the comparison
 constexpr Real kInverseUlps = 35;     // the inverse motion's quadratic
 constexpr Real kSlackUlps = 6;        // margin, radii and remainder added up
@@ -123,7 +123,7 @@ void known(Statement& s, const kernel::Vec3Of<T>& v, Real bound) {
 
 // ---- The separation test.
 
-/// Of a motion's quadratics: bounds on R's coefficients and Bernstein points, on c's, for x and S up to these.
+/// Sizes of a motion's quadratics: bounds on R's coefficients and Bernstein points, on c's, for x and S up to these.
 struct Sizes {
   Real R[3], X, c[3], C;
   /// |c0|, |c1| <= length + D_1 d. |c2|: of the turns x^2 / 2, of slides that turn x, of the slides' own accelerations
@@ -206,7 +206,8 @@ Nodes bernsteinC(const RigidLanes& m) {
   return nodesOf(m.cb[0], m.cb[1], m.cb[2]);
 }
 
-/// What slackOf() gives: up to where nothing could be separated any more, as n.c, h_m and h_s are smaller together.
+/// The largest value of slackOf() that matters: with more, nothing could be separated, as n.c, h_m and h_s are smaller
+/// together.
 Real mostSlack(const Sizes& sizes, Real S) {
   return 1.01 * (sizes.X * S + sizes.C + S);
 }
@@ -392,7 +393,7 @@ void sines(const Slice&, Statement& s, bool cosine) {
   s.offBy({1, sum}, (cosine ? 1.5 : 1.1) * kU);
 }
 
-/// Of a cone, h + x is above, h - x below: both are no farther off than their parts.
+/// For a cone, h + x is above, h - x below: both are no farther off than their parts.
 void roundReach(const Slice& slice, Statement& s, PieceKind kind) {
   PieceInputs piece(s, kind, slice.s[1]);
   for (Recorded& h : piece.piece.size) s.cut(h, 0x1p-200, 0x1p100);
@@ -512,7 +513,7 @@ class Prover {
     ++runs_;
     return std::system((gappa_ + " -Eno-auto-dichotomy '" + file + "' > '" + file + ".log' 2>&1").c_str()) == 0;
   }
-  /// Of the bound, what Gappa finds that rounding takes at most.
+  /// The part of the bound that rounding takes at most, as Gappa finds it.
   Real share(const Statement& s, const Arithmetic& arithmetic, const std::string& file) {
     const std::string ask = file + ".ask";
     if (!run(s.script(arithmetic, 1, true), ask)) throw std::runtime_error("theorems: Gappa has no answer: " + ask);
@@ -542,8 +543,9 @@ class Prover {
 
 }  // namespace
 
-/// Arguments: Gappa's program; a folder for the scripts; quick, or all: every theorem, rounding to nearest, up, down
-/// and to zero, or used: all to nearest, with what of each bound Gappa finds to be used; a part of the names.
+/// Arguments: Gappa's program; a folder for the scripts; `quick`, `all` or `used`; a part of the names. With `all`
+/// every theorem is proven, rounding to nearest, up, down and to zero. With `used` all are proven to nearest, and the
+/// part of each bound that Gappa finds to be used is printed.
 int main(int argc, char** argv) {
   if (argc < 4) {
     std::cerr << "usage: pads_theorems GAPPA FOLDER quick|all|used [NAME]\n";

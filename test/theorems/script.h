@@ -23,11 +23,11 @@ class Statement {
   /// A number that is given, between these bounds, with a value well within.
   Recorded input(Real bound) { return input(-bound, bound); }
   Recorded input(Real least, Real most);
-  /// What was computed counts as given from here on, and how it was computed does not matter.
+  /// The computed number counts as given from here on, and how it was computed does not matter.
   void cut(Recorded x, Real least, Real most);
   /// A bound that is known of the exact value of something that was computed.
   void known(Recorded x, Real bound);
-  /// The same of all sums of products of a component of one vector with one of another: by Cauchy and Schwarz no part
+  /// The same for all sums of products of a component of one vector with one of another. By Cauchy and Schwarz, no part
   /// of such a sum exceeds the product of their lengths.
   /// @return the nodes of these sums.
   std::vector<int> knownDots(const std::vector<int>& a, const std::vector<int>& b, Real bound);

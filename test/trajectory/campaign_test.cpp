@@ -32,8 +32,8 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// FCL's answer is off by rounding: a hit counts for boxes that are this much smaller on each side, in m, and what is
-/// proven to touch must do so with boxes that are as much larger.
+/// FCL's answer is off by rounding. A hit counts for boxes that are this much smaller on each side, in m, and boxes
+/// that are proven to touch must do so if they are as much larger.
 constexpr double kAround = 1e-5;
 constexpr int kCases = 2000;
 

@@ -100,8 +100,8 @@ TEST(Joints, QuaternionsTakeTheShortestRotationAtConstantSpeed) {
   }
 }
 
-/// A ball of radius 0.1 on an arm of 1 m, across the axis of rotation, runs into one of radius 0.15 that sits on the
-/// path at three quarters of the way: they touch where the chord 2 sin(angle / 2) is 0.25.
+/// A ball of radius 0.1 on an arm of 1 m, across the axis of rotation. It runs into a ball of radius 0.15 that sits on
+/// the path at three quarters of the way. They touch where the chord 2 sin(angle / 2) is 0.25.
 TEST(Joints, SphericalJointMeetsABallAtTheTimeWorkedOut) {
   const Vector3d axis = Vector3d(1, 2, -0.5).normalized();
   const double angle = 2.5;
@@ -122,7 +122,7 @@ TEST(Joints, SphericalJointMeetsABallAtTheTimeWorkedOut) {
   EXPECT_TRUE(scene.run(JointMotion::linear(*scene.tree, q0, kTilt.slerp(0.6, end).coeffs())).isFree());
 }
 
-/// The same, seen from the arm: its link against another arm that hangs on the arm's own tip by a second joint, so that
+/// The same, seen from the arm. Its link runs into another arm that hangs on the arm's own tip by a second joint, so
 /// the pair's path goes up through the spherical joint.
 TEST(Joints, SelfCollisionThroughASphericalJoint) {
   const Vector3d axis = Vector3d(1, 2, -0.5).normalized();

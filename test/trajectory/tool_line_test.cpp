@@ -449,8 +449,9 @@ struct Gantry {
   static VectorXd at(const Vector3d& x, double yaw) { return values({x[0], x[1], yaw}); }
 };
 
-/// Near the axis the nearest point goes fast: up to the end of an arc of 1 rad, where the tool is 0.15 m from the axis,
-/// while the tool turns evenly, by 0.5 rad. There, at 0.3 / 0.55 of the second step, it is turned the most.
+/// Near the axis the nearest point goes fast. It does so up to the end of an arc of 1 rad, where the tool is 0.15 m
+/// from the axis, while the tool turns evenly, by 0.5 rad. There, at 0.3 / 0.55 of the second step, it is turned the
+/// most.
 TEST(ToolLine, TheNearestPointGoesFastNearTheAxis) {
   const Gantry gantry;
   const Vector3d radial = Crane::onCircle(1), along = Crane::onCircle(1 + kPi / 2);
@@ -469,7 +470,7 @@ TEST(ToolLine, TheNearestPointGoesFastNearTheAxis) {
   EXPECT_TRUE(r.within_tolerance);
 }
 
-/// Within one step the tool goes beyond the axis and back, where the other end of the arc is nearer: the orientation
+/// Within one step the tool goes beyond the axis and back, where the other end of the arc is nearer. The orientation
 /// that is wanted there is 2 rad away, and is 1.5 rad away at another time.
 TEST(ToolLine, TheNearestPointJumpsBeyondTheAxis) {
   const Gantry gantry;

@@ -184,7 +184,7 @@ TEST(Trajectory, BracketIsAProofAtTimesWhoseDoublesAreFarApart) {
         certain += r.certain;
         const long double part = (0.4L - from) / (1.0L - from);
         const long double time = begin + part * (static_cast<long double>(end) - begin);
-        // What the query's own proof leaves open is far below an ulp of these times.
+        // The part that the query's own proof leaves open is far below an ulp of these times.
         EXPECT_LE(r.t_lower, time);
         EXPECT_GE(r.t_upper, time);
         EXPECT_LE(r.contacts[0].t_lower, time);
@@ -311,7 +311,7 @@ TEST(Trajectory, BudgetIsForAllPieces) {
   EXPECT_TRUE(slider.run(shake, request).isFree());
 }
 
-/// Of the paper's own work too, which is counted elsewhere than the library's.
+/// The same for the paper's own work, which is counted elsewhere than the library's.
 TEST(Trajectory, BudgetOfThePapersMethodIsForAllPieces) {
   Scene scene;
   scene.add("slide", JointType::prismatic, "base", "cart", Vector3d::UnitX());

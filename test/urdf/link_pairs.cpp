@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Pairs of links that classifyLinkPairs() calls "never", against FCL: each is sampled within the joints' limits, mostly
+// Pairs of links that classifyLinkPairs() calls "never", against FCL. Each is sampled within the joints' limits, mostly
 // near the closest poses that a search with FCL's distances finds; none may touch. Beside it: pairs by kind, the time,
 // and what sampling as MoveIt's assistant does it takes and says.
 #include <algorithm>

@@ -218,8 +218,8 @@ TEST_F(ManyRobotsTest, UnknownCellsOfAnOctoMap) {
   EXPECT_TRUE(touchesAt(run(0.5, -0.5, true), 0.9 / 4));
 }
 
-// Known are two cells of octant 7, a free one at its corner 0 and an occupied one at x, y > 1/2: unknown within the box
-// of both are the two beside them, and nothing else of the root.
+// Two cells of octant 7 are known: a free one at its corner 0, and an occupied one at x, y > 1/2. So within the box of
+// both, the two cells beside them are unknown, and nothing else of the root.
 TEST_F(ManyRobotsTest, UnknownEndsWhereKnowledgeEnds) {
   const std::string path = write("part.ot", octomap(4, node(1, 0x80) + node(1, 0x09) + node(-1, 0) + node(1, 0)));
   SceneOptions options;
@@ -241,8 +241,8 @@ std::string branch(const std::vector<int>& octants, std::size_t from) {
   return nodes + node(1, 0);
 }
 
-// Two cells of the last level, far from each other: their box cuts the cells between them at no coarse level. What is
-// unknown is a few hundred boxes that fill it, not a cell for each square of its faces (10^9 of them).
+// Two cells of the last level, far from each other: their box cuts the cells between them at no coarse level. The
+// unknown space is a few hundred boxes that fill it, not a cell for each square of its faces (10^9 of them).
 TEST_F(ManyRobotsTest, UnknownSpaceIsFewBoxes) {
   std::vector<int> one = {0}, other = {7};
   for (int level = 2; level <= 16; ++level) {

@@ -116,8 +116,8 @@ TEST_F(MeshTest, PolygonsThatAreNotConvexAreCoveredOnce) {
   }
 }
 
-// A prism over a polygon that is not convex, and over one that crosses itself: each edge of a face is one of a
-// triangle's, so that the solid is closed.
+// A prism over a polygon that is not convex, and over one that crosses itself. Each edge of a face is one of a
+// triangle's, so the solid is closed.
 TEST_F(MeshTest, CutPolygonsKeepSolidsClosed) {
   const std::vector<std::vector<std::pair<double, double>>> outlines = {{{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}},
                                                                         {{0, 0}, {2, 2}, {2, 0}, {0, 2}},

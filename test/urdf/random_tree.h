@@ -21,8 +21,8 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using Geometry = std::shared_ptr<const fcl::CollisionGeometryd>;
 
-/// FCL's answers are off by rounding: what counts as contact must be there with shapes that are this much smaller on
-/// each side, in m; what is said to touch, with shapes as much larger. Meshes are what they are.
+/// FCL's answers are off by rounding. A contact counts only if it is there with shapes that are this much smaller on
+/// each side, in m. A pair that is said to touch must do so with shapes as much larger. Meshes are what they are.
 constexpr double kAround = 1e-5;
 
 /// A collision element, or an obstacle.

@@ -379,8 +379,8 @@ std::string octomap(const std::string& title, int nodes, const std::string& data
   return "# " + title + "\nid OcTree\nsize " + std::to_string(nodes) + "\nres 0.000030517578125\ndata\n" + data;
 }
 
-// Of the root's octants 0 is free, 1 (x > 0, y < 0, z < 0) and 7 (all > 0) are occupied: two bits an octant, from the
-// lowest, 1 then 0 for free, 0 then 1 for occupied.
+// Octant 0 of the root is free; 1 (x > 0, y < 0, z < 0) and 7 (all > 0) are occupied. An octant has two bits, from the
+// lowest: 1 then 0 for free, 0 then 1 for occupied.
 const std::string kBinary = octomap("Octomap OcTree binary file", 4, "\x09\x80");
 
 TEST_F(SceneTest, OctoMapBinaryCellsAreBoxes) {
@@ -437,7 +437,7 @@ TEST_F(SceneTest, OctoMapHasSixteenLevels) {
   expectContains(errorOf("deep.ot", octomap("Octomap OcTree file", 18, full + node(1, 0))), "below the 16 levels");
 }
 
-// What says that it is empty though bytes follow would pass as free.
+// A file that says that it is empty, though bytes follow, would pass as free.
 TEST_F(SceneTest, OctoMapHoldsWhatItsHeadSays) {
   expectContains(errorOf("none.bt", octomap("Octomap OcTree binary file", 0, "\x09\x80")),
                  "goes on after its last node");

@@ -82,7 +82,7 @@ TEST_F(SrdfTest, ASlipIsHintedAt) {
   load("<disable_collisions link1='a' link2='forearm_lnk'/>");
   ASSERT_EQ(notes_.size(), 1u);
   expectContains(notes_[0], "; did you mean 'forearm_link' by 'forearm_lnk'?");
-  // What the file names elsewhere is not what is meant.
+  // A link that the file names elsewhere is not the one that is meant.
   load("<disable_collisions link1='a' link2='wrist_left'/><disable_collisions link1='a' link2='wrist_lef2'/>");
   ASSERT_EQ(notes_.size(), 1u);
   EXPECT_EQ(notes_[0].find("did you mean"), std::string::npos) << notes_[0];
@@ -167,9 +167,9 @@ TEST_F(SrdfTest, ErrorsNameFileAndReason) {
   expectContains(messageOf([&] { loadSrdf(write("x.srdf", "<sdf/>"), tree_); }), "x.srdf': is not an SRDF");
 }
 
-/// base -turn(z)- arm -(fixed)- frame, without geometry -bend(z)- tip, and a chain of fixed links from the base: plate,
-/// near, which overlaps the base; far, out of reach; wall, which the tip meets at some angles; shelf, which the tip
-/// meets at q = 0.
+/// base -turn(z)- arm -(fixed)- frame, without geometry -bend(z)- tip. Fixed links from the base, in a chain: plate;
+/// near, which overlaps the base; far, out of reach. Then wall, which the tip meets at some angles; shelf, which the
+/// tip meets at q = 0.
 const char* const kRobot = R"(<robot name="mill">
 <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
 <link name="arm"><collision><origin xyz="0.5 0 0"/><geometry><box size="0.7 0.1 0.1"/></geometry></collision></link>
@@ -234,7 +234,7 @@ TEST_F(SrdfTest, ProofsGoWithTheRobot) {
     manager.setup();
     return manager.collide(Eigen::Vector2d(1, 0)).unproven_allowed_pairs;
   };
-  // Those that stand still against each other are no exceptions, and of neighbours set-up has proofs of its own.
+  // Pairs that stand still against each other are no exceptions, and set-up has proofs of its own for neighbours.
   const auto standStill = [](const std::string& a, const std::string& b) {
     const std::set<std::string> on_base{"base", "plate", "near", "far", "wall", "shelf"};
     return on_base.count(a) > 0 && on_base.count(b) > 0;
@@ -251,7 +251,7 @@ TEST_F(SrdfTest, ProofsGoWithTheRobot) {
   EXPECT_EQ(unproven(), static_cast<std::size_t>(always));
 }
 
-// Of neighbours the file's word is the only one.
+// For neighbours the file's word is the only one.
 TEST_F(SrdfTest, ASrdfSpeaksOfNeighboursToo) {
   Robot robot = loadUrdf(write("two.urdf", R"(<robot name="two">
 <link name="base"><collision><geometry><sphere radius="0.2"/></geometry></collision></link>

@@ -415,7 +415,7 @@ TEST(MovingVolumes, HoldTheLinkWhereTheOtherStands) {
         pair.manager().continuousCollide(pair.motionThrough(q, 0, rate), request, result);
         if (result.statistics.visibility_executor != "recorder" || result.statistics.redon.pairs_by_standard) continue;
         int eighth = 0;
-        for (const Batch::Swept& swept : batch.swept) {
+        for (const Batch::SweptVolume& swept : batch.swept) {
           double room = -1;
           for (; eighth < 8 && room < 0; ++eighth) room = roomIn(batch, swept.volume, pair, q, rate, eighth);
           ASSERT_GE(room, 0) << "seed " << seed;

@@ -168,21 +168,21 @@ TEST_F(SolveTwice, AutomaticCountsBothSolves) {
     }
     EXPECT_EQ(report_.repeated, 0u);
   }
-  EXPECT_EQ(choice_.best(), Way::without);
+  EXPECT_EQ(choice_.best(), ExecutorKind::none);
   EXPECT_GT(lost_us, 2 * with_us_);
   EXPECT_LT(lost_us, Choice::kShare * all_us);
 }
 
 TEST_F(SolveTwice, AutomaticTakesTheStageForFreeMotions) {
   for (int trial = 0; trial < 6; ++trial) {
-    EXPECT_EQ(choice_.best(), Way::without);
+    EXPECT_EQ(choice_.best(), ExecutorKind::none);
     report_.trials = 0;
     for (int asked = 0; asked < 3000 && !report_.trials; ++asked) solve(VisibilityMode::automatic);
     ASSERT_EQ(report_.trials, 1u);
     EXPECT_EQ(refined_, Calls({true, false}));
     EXPECT_EQ(report_.repeated, 0u);
   }
-  EXPECT_EQ(choice_.best(), Way::cpu);
+  EXPECT_EQ(choice_.best(), ExecutorKind::cpu);
   solve(VisibilityMode::automatic);
   EXPECT_EQ(refined_, Calls({true}));
   status_ = Status::contact;
@@ -220,8 +220,8 @@ TEST_F(SolveTwice, MakingAnExecutorIsNoCostOfAQuery) {
   EXPECT_EQ(report_.making_us, 200000);
   EXPECT_EQ(report_.trials, 1u);
   const double begin = now_us_;
-  while (choice.best() == Way::without && now_us_ < 1e9) solve(VisibilityMode::automatic, choice);
-  EXPECT_EQ(choice.best(), Way::own);
+  while (choice.best() == ExecutorKind::none && now_us_ < 1e9) solve(VisibilityMode::automatic, choice);
+  EXPECT_EQ(choice.best(), ExecutorKind::own);
   EXPECT_LT(now_us_ - begin, 3e7) << "the making counted as a cost of a query";
   solve(VisibilityMode::automatic, choice);
   EXPECT_EQ(made, 1);

@@ -9,7 +9,7 @@
 #include "big.h"
 
 namespace verify::test {
-namespace {
+namespace arithmetic_test {
 
 struct Rational {
   Rational() { mpq_init(q); }
@@ -227,5 +227,5 @@ TEST(VerifyTaylor, RotationVectors) {
   EXPECT_THROW(rotation(far), NotProven);
 }
 
-}  // namespace
+}  // namespace arithmetic_test
 }  // namespace verify::test

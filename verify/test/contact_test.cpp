@@ -5,7 +5,7 @@
 #include "worlds.h"
 
 namespace verify::test {
-namespace {
+namespace contact_test {
 
 constexpr double kX = 0.125;  // where the first body is at t = 1/2
 
@@ -26,7 +26,7 @@ struct Pair {
     m.until = 0.25;
     motion = m.write(world);
   }
-  /// Of the first root the pair is ignored until the end of the claim, so that any node proves it.
+  /// The pair of the first root is ignored until the end of the claim, so any node proves it.
   mutable std::string last;
   bool shown(int first, int second, double t, const std::string& witness) const {
     const Verdict v =
@@ -237,5 +237,5 @@ TEST(VerifyContact, WhatIsNotCheckedOrNotThereIsRefused) {
   EXPECT_FALSE(judge(self, m.write(self), sep({1, 0, 0}) + contact(0, 1, 0, 0.5, in)).verified);
 }
 
-}  // namespace
+}  // namespace contact_test
 }  // namespace verify::test

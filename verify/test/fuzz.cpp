@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The first byte says what the rest is: 0 records for a fixed world, 1 a world, a motion and a proof with their hashes
-// made to fit, separated by bytes 30, 2 URDF, 3 SRDF, 4 STL, 5 OBJ, 6 a scene's URDF, 7 a plan. Wrong input may throw
-// BadInput or be refused; what is verified and yet wrong at a sample is a fault, as is a crash.
+// The first byte says what the rest is. With 0 it is records for a fixed world. With 1 it is a world, a motion and a
+// proof with their hashes made to fit, separated by bytes 30. It is URDF (2), SRDF (3), STL (4), OBJ (5), a scene's
+// URDF (6) or a plan (7). Wrong input may throw BadInput or be refused. A claim that is verified and yet wrong at a
+// sample is a fault, as is a crash.
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>

@@ -9,7 +9,7 @@
 #include "files.h"
 
 namespace verify::test {
-namespace {
+namespace plan_test {
 
 class VerifyPlan : public VerifyFiles {
  protected:
@@ -125,7 +125,7 @@ TEST_F(VerifyPlan, SplinesAreThoseOfTheVelocities) {
   EXPECT_NE(said(motion({q(0, {0, 0, 0, 10, -15, 6})}), "t,a,a_vel,a_acc\n0,0,0,0\n2,1,0,0.001\n"), "same");
 }
 
-// Of positions alone the one spline whose velocity and acceleration do not jump, from rest to rest.
+// Positions alone are joined by the one spline from rest to rest whose velocity and acceleration do not jump.
 TEST_F(VerifyPlan, PositionsAloneMayBeUpsampled) {
   const auto upsampled = [&](const std::vector<std::string>& pieces, const std::string& csv) {
     return said(motion(pieces), csv, Interpolation::upsampled);
@@ -152,7 +152,7 @@ TEST_F(VerifyPlan, PositionsAloneMayBeUpsampled) {
                                              {q(0, {0, 0, 1.5, -0.5}), q(0, {1, 3, 1e-11, -1 - 1e-11})},
                                              {q(0, {0, 1e-11, 1.5, -0.5}), q(0, {1, 3, 0, -1})}})
     EXPECT_NE(upsampled(pieces, uneven).find("smooth spline from rest to rest"), std::string::npos) << pieces[0];
-  // What begins and ends without bending moves there.
+  // A spline that does not bend at its begin and end moves there.
   EXPECT_NE(upsampled({q(0, {0, 1.5, 0, -0.5}), q(0, {1, 0, -1.5, 0.5})}, csv), "same");
   // A point with velocities is not upsampled.
   const std::string with = "t,a,a/velocity\n0,0,0\n1,1,0\n3,3,0\n";
@@ -272,7 +272,7 @@ TEST_F(VerifyPlan, NamesOfAWorldChangeNoColumn) {
   plan.robot = {"a"};
   EXPECT_TRUE(same(cubic));
   EXPECT_FALSE(same(straight));
-  // Of a world that is no file's, names are its own.
+  // If the world is no file's, its names are its own.
   plan.robot.clear();
   EXPECT_TRUE(same(straight));
 }
@@ -289,5 +289,5 @@ TEST_F(VerifyPlan, WhatIsNotInAPlanIsRefused) {
   EXPECT_NE(said(m, "a\n0.1\n").find("two waypoints"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace plan_test
 }  // namespace verify::test

@@ -8,7 +8,7 @@
 #include "worlds.h"
 
 namespace verify::test {
-namespace {
+namespace proof_test {
 
 void expectRefused(const Verdict& v, const std::string& words) {
   EXPECT_FALSE(v.verified);
@@ -130,7 +130,7 @@ TEST(VerifyProof, APairThatIsIgnoredToTheEndIsNotChecked) {
   m.until = 0.5;
   m.ignored = part;
   EXPECT_EQ(countsOf(m, x), (Counts{1, 0, 1}));
-  // Of two pieces in one, in both to the end, in both up to a time.
+  // A pair that is ignored in one of two pieces, in both to the end, in both up to a time.
   const std::string inside = "q 0 " + hex(2.8) + "\n", leaving = "q 0 " + hex(2.8) + " " + hex(-2.8) + "\n",
                     back = "q 0 " + hex(0) + " " + hex(2.8) + "\n";
   m = MotionText();
@@ -475,12 +475,12 @@ TEST(VerifyProof, NeighboursHaveNoLinkBetweenThem) {
   EXPECT_EQ(chain("", "", "link", "a b"), "");
   EXPECT_NE(chain("", "", "link", "b floor"), "");
   EXPECT_EQ(chain("", "", "carried", "b floor"), "");
-  // Of two variables is free only what stands on what stands still.
+  // A frame of two variables moves freely only if it stands on a frame that stands still.
   EXPECT_NE(chain("", slide(0) + slide(1), "link", "a b"), "");
   EXPECT_EQ(chain(slide(2), slide(0) + slide(1), "link", "a b"), "");
 }
 
-// What stands still against each other is no matter of a motion: proven, not believed.
+// Bodies that stand still against each other are no matter of a motion: proven, not believed.
 TEST(VerifyProof, PairsThatStandStill) {
   const auto reason = [](const std::string& first, const std::string& second, const std::string& pair) {
     return readWorld(kHead + "variable x\nframe a 0 " + hex(kHere) + "\n" + first + "frame b 1 " + hex(kHere) + "\n" +
@@ -576,7 +576,7 @@ TEST(VerifyProof, PiecesJoin) {
   expectRefused(verdict({q(0, 1), q(3, 1)}, {{-1, 0, 0}, {1, 0, 0}}), "the motion jumps");
   expectRefused(verdict({q(0, 1), ""}, {{-1, 0, 0}, {-1, 0, 0}}), "the motion jumps");
   expectRefused(verdict({q(0, 1), q(1, 0), q(0.9, 0)}, {{-1, 0, 0}, {-1, 0, 0}, {-1, 0, 0}}), "piece 2");
-  // What rounding does is no jump, and is said; 4e-9 is one.
+  // A jump as small as roundings is accepted, and said; one of 4e-9 is refused.
   const Verdict v = verdict({q(0, 1), q(1 + 1e-10, 0)}, {{-1, 0, 0}, {-1, 0, 0}});
   expectVerified(v);
   EXPECT_NEAR(v.jump, 1e-10, 1e-15);
@@ -705,8 +705,7 @@ TEST(VerifyProof, HostileProofs) {
   expectRefused(judge(world, far.write(world), sep({1, 1, 1})), "");
 }
 
-// What a node looks at is counted, also where it proves nothing: partners that are ignored, triangles that hang
-// together.
+// The work of a node is counted also if it proves nothing: partners that are ignored, triangles that hang together.
 TEST(VerifyProof, WorkIsCountedWhereNothingIsProven) {
   std::string text = kHead + "variable x\nframe f 0 " + hex(kHere) + "\nslide " + hex(V{1, 0, 0}) + " 0 " + hex(1) +
                      " " + hex(0) + "\ngeometry sphere " + hex(0.1) + "\n";
@@ -840,5 +839,5 @@ TEST(VerifyStatement, Sha256) {
   EXPECT_EQ(hexOf(sha256(two)), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
 }
 
-}  // namespace
+}  // namespace proof_test
 }  // namespace verify::test

@@ -8,7 +8,7 @@
 #include "worlds.h"
 
 namespace verify::test {
-namespace {
+namespace random_test {
 
 BigPose bigTurn(Rng& rng) {
   return turned(BigVec{Big(uniform(rng, -1, 1)), Big(uniform(rng, -1, 1)), Big(uniform(rng, -1, 1))},
@@ -481,5 +481,5 @@ TEST(VerifyRandom, ADroppedPartner) {
   EXPECT_GE(tried, 10);
 }
 
-}  // namespace
+}  // namespace random_test
 }  // namespace verify::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is said to people: all that a claim rests on, and nothing that looks like a verdict and is none.
+// Texts for people name all that a claim rests on, and nothing in them looks like a verdict and is none.
 #include "../report.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include "worlds.h"
 
 namespace verify::test {
-namespace {
+namespace report_test {
 
 bool has(const std::vector<std::string>& lines, const std::string& text) {
   return std::any_of(lines.begin(), lines.end(),
@@ -160,5 +160,5 @@ TEST(VerifyReport, JsonHasNoNumbersThatItHasNot) {
   EXPECT_NE(json.find("[\"inf\", \"-inf\", 0.5]"), std::string::npos) << json;
 }
 
-}  // namespace
+}  // namespace report_test
 }  // namespace verify::test

@@ -6,7 +6,7 @@
 #include "worlds.h"
 
 namespace verify::test {
-namespace {
+namespace rotation_test {
 
 /// The orthogonal matrix nearest to R: Newton's iteration X = (X + X^-T) / 2, which doubles the digits each time.
 std::array<Big, 9> nearestOrthogonal(const std::array<double, 9>& R) {
@@ -25,8 +25,8 @@ std::array<Big, 9> nearestOrthogonal(const std::array<double, 9>& R) {
   return X;
 }
 
-// Nine numbers near a rotation's that are read are within 2^-49 of a rotation's, the nearest one's, by which the claim
-// is about something; a writer's, off by the rounding of some products, are all read.
+// If nine numbers are read as a rotation, they are within 2^-49 of a rotation's, the nearest one's, so the claim is
+// about something. A writer's numbers, off by the rounding of some products, are all read.
 TEST(VerifyStatement, WhatIsReadAsARotationIsNearOne) {
   const auto isRead = [](const std::array<double, 9>& R) {
     M m;
@@ -76,5 +76,5 @@ TEST(VerifyStatement, WhatIsReadAsARotationIsNearOne) {
   EXPECT_FALSE(isRead({1e9, 0, 0, 0, 1, 0, 0, 0, 1e-9}));
 }
 
-}  // namespace
+}  // namespace rotation_test
 }  // namespace verify::test

@@ -3,7 +3,7 @@
 #include "files.h"
 
 namespace verify::test {
-namespace {
+namespace scene_test {
 
 class VerifyScene : public VerifyFiles {
  protected:
@@ -105,7 +105,7 @@ TEST_F(VerifyScene, AUrdfsLinksStandWithTheirJointsAtZero) {
   M turned = post;
   turned.R = (rotationAbout({0, 0, 1}, 4e-15) * post).R;
   EXPECT_NE(said(cell(floor, turned), {urdf}), "same");
-  // What another joint moves where it stands at 0, and loops.
+  // A link that another joint moves, where that joint stands at 0; and loops.
   const std::string hinge = R"(<joint name="h" type="revolute"><parent link="post"/><child link="lid"/>
 <axis xyz="0 0 1"/></joint>)",
                     mimic = R"(<joint name="h" type="revolute"><mimic joint="g" offset="0.1"/><parent link="post"/>
@@ -185,5 +185,5 @@ TEST_F(VerifyScene, TheRobotsRootStandsWhereTheBaseSays) {
   EXPECT_THROW(readBase("1,2deg,3"), BadInput);
 }
 
-}  // namespace
+}  // namespace scene_test
 }  // namespace verify::test

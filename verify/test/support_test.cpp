@@ -8,10 +8,10 @@
 #include "worlds.h"
 
 namespace verify::test {
-namespace {
+namespace support_test {
 
-// A direction that comes to be a disc's axis at an end of the interval, or passes by it within: the bound is above
-// every point all the way, and where it is the axis nothing is lost, however little the disc's rim is farther out
+// A direction comes to be a disc's axis at an end of the interval, or passes by it within. The bound is above every
+// point all the way. Where the direction is the axis nothing is lost, however little the disc's rim is farther out
 // before.
 TEST(VerifySupport, NothingIsLostWhereADirectionComesToBeADiscsAxis) {
   Rng rng(13);
@@ -47,5 +47,5 @@ TEST(VerifySupport, NothingIsLostWhereADirectionComesToBeADiscsAxis) {
   EXPECT_LT(most_lost, 1e-15);
 }
 
-}  // namespace
+}  // namespace support_test
 }  // namespace verify::test

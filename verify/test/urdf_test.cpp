@@ -2,11 +2,12 @@
 // Whose robot a proof is about: worlds that are not the file's to the last digit, and files that are not read in full.
 #include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "files.h"
 
 namespace verify::test {
-namespace {
+namespace urdf_test {
 
 using VerifyUrdf = VerifyFiles;
 
@@ -79,8 +80,8 @@ TEST_F(VerifyUrdf, AxesOfTheFileAreThoseOfTheClaim) {
   EXPECT_LT(same, 150);
 }
 
-// After 2^39 m an axis that may be off by 2^-50 in each entry is by 0.5 mm, 0.7 mm across: that is in the bound, beside
-// what the rotations of the frame and the wall may be off.
+// An axis that may be off by 2^-50 in each entry is off by 0.5 mm after 2^39 m, by 0.7 mm across. That is in the bound,
+// beside the errors of the rotations of the frame and the wall.
 TEST_F(VerifyUrdf, WhatAnAxisMayBeIsInTheProof) {
   const auto verdict = [](const V& axis, double gap) {
     // The wall lies along the axis, next to the ball's path.
@@ -129,7 +130,7 @@ TEST_F(VerifyUrdf, ChainsOfMimics) {
   };
   EXPECT_NE(single("nobody", "nobody").find("is not there"), std::string::npos) << single("nobody", "nobody");
   EXPECT_NE(single("j1", "j1").find("mimics itself"), std::string::npos) << single("j1", "j1");
-  // Of a joint that stands still.
+  // A joint that mimics one that stands still.
   const auto still = [&](const std::string& offset, const std::string& elements) {
     return said(kHead + "variable j1\n" + frame("a", 0) + frame("b", 1) + frame("c", 2, elements) + kSphere +
                     body("link", "a", 1) + body("link", "b", 2) + body("link", "c", 3),
@@ -318,7 +319,7 @@ TEST_F(VerifyMeshes, FacesOfManyCorners) {
   EXPECT_EQ(saidOf(meshText(square, {{0, 2, 3}, {0, 3, 4}, {0, 1, 2}}, false), "s.obj", five), "same");
   const std::vector<V> rest{square[0], square[2], square[3], square[4]};
   EXPECT_EQ(saidOf(meshText(rest, {{0, 1, 2}, {0, 2, 3}}, false), "s.obj", five), "same");
-  // Of a fan along an edge of many corners each triangle lies on the edge of the next one.
+  // In a fan along an edge of many corners, each triangle lies on the edge of the next one.
   std::vector<V> comb;
   std::string face = "f";
   for (int k = 0; k < 12; ++k) comb.push_back({0.1 * k, 0, 0}), face += " " + std::to_string(k + 1);
@@ -343,8 +344,8 @@ TEST_F(VerifyMeshes, WhatHasNoAreaIsNotLost) {
   EXPECT_NE(saidOf(mesh, "f.obj", obj(sliver, "f 1 2 3\nf 1 4 2\n")), "same");
 }
 
-// 100 collision geometries of one mesh in the reverse order of the world's bodies: once the mesh was put in order for
-// each pair of them. 3,000 joints that mimic each other in a chain; what would be too much work is refused.
+// Two comparisons that take little time: 100 collision geometries of one mesh in the reverse order of the world's
+// bodies, and 3,000 joints that mimic each other in a chain. A comparison that would be too much work is refused.
 TEST_F(VerifyMeshes, ComparingTakesNoTime) {
   std::vector<V> v;
   std::vector<std::array<int, 3>> t;
@@ -385,6 +386,18 @@ TEST_F(VerifyMeshes, ComparingTakesNoTime) {
               "'/></geometry></collision>";
   for (int k = n; k < 2000; ++k) world += body("link", "a", 1);
   EXPECT_NE(said(world, robot(link("a", scales))).find("too much work"), std::string::npos);
+}
+
+// Each link's way to the root is gone once. (With the square of the links, 10,000 take 10 s.)
+TEST_F(VerifyUrdf, LongChainsAreReadAtOnce) {
+  std::string chain = link("l0", "");
+  for (int k = 1; k <= 10000; ++k) {
+    const std::string name = std::to_string(k);
+    chain += link("l" + name, "") + joint("j" + name, "fixed", "l" + std::to_string(k - 1), "l" + name);
+  }
+  const std::clock_t begin = std::clock();
+  EXPECT_NE(said(kHead + frame("l0", 0), robot(chain)).find("has no frame"), std::string::npos);
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 3);
 }
 
 TEST_F(VerifyMeshes, NumbersAreReadInFull) {
@@ -524,5 +537,5 @@ TEST_F(VerifyUrdf, AnSrdfIsReadByAWhitelist) {
   EXPECT_NE(answer("<disable_default_collisions link='a' except='b'/>").find("except"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace urdf_test
 }  // namespace verify::test

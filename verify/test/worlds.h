@@ -198,7 +198,7 @@ inline Verdict judge(const World& world, const std::string& motion, const std::s
   return judge(world, record(motion, nodes));
 }
 
-/// What moves, in doubles.
+/// The bodies of a motion where they are at a time, in doubles.
 class Sampler {
  public:
   Sampler(const World& world, const Motion& motion) : world(world), motion(motion) {}

@@ -195,9 +195,9 @@ bool isChecked(const Body& a, const Body& b, const AllowedCollisionMatrix& acm) 
 
 }  // namespace
 
-/// The manager checks neither neighbours nor a body against the link that carries it; MoveIt does, where nothing allows
-/// it. Attached objects are checked against neighbours too: so the shapes of one of the two links become such objects,
-/// and bodies that their link may not touch are mounted on a link of their own.
+/// The manager may leave out neighbours, and does not check a body against the link that carries it. MoveIt checks
+/// both, unless they are allowed. Attached objects are checked against neighbours too. So the shapes of one of two
+/// neighbours become such objects, and bodies that their link may not touch are mounted on a link of their own.
 /// @return whether the robot has to be read again.
 bool Cell::separate(const std::vector<Body>& bodies, const AllowedCollisionMatrix& acm) {
   const std::size_t before = apart_.size() + mounts_.size();
@@ -297,7 +297,7 @@ void Cell::setMargins(const std::vector<Body>& bodies) {
   body_margins_ = std::move(margins);
 }
 
-/// What is not checked would go into `free` unseen.
+/// A pair that is wanted and not checked would go into `free` unseen.
 void Cell::requireChecked() const {
   std::set<std::pair<std::string, std::string>> checked;
   for (const auto& pair : manager_->checkedLinkPairs()) checked.insert(ordered(pair.first, pair.second));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The node part: parameters, the planning scene, error codes, markers. What is decided is decided in certifier.cpp.
+// The node part: parameters, the planning scene, error codes, markers. All decisions are in certifier.cpp.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -23,9 +23,9 @@ namespace fcl_artic_moveit {
 namespace {
 
 constexpr const char* kName = "CertifySolution";
-constexpr double kMostBudget = 9007199254740992;  // 2^53: all whole numbers up to it are doubles
+constexpr double kMaxBudget = 9007199254740992;  // 2^53: all whole numbers up to it are doubles
 
-/// What the parameters say.
+/// The values of the parameters.
 struct Settings {
   CertifierOptions certifier;
   bool refuse_undecided = true;
@@ -37,7 +37,7 @@ struct Settings {
 /// anew for each plan.
 class Parameters {
  public:
-  /// Declares them, with what the node's YAML files say of them.
+  /// Declares them, with the values of the node's YAML files.
   /// @throws std::invalid_argument, rclcpp's exceptions, naming the parameter.
   Parameters(rclcpp::Node& node, std::string prefix) : node_(node), prefix_(std::move(prefix)) {
     declare(
@@ -68,7 +68,7 @@ class Parameters {
       if (std::none_of(changed.begin(), changed.end(), own)) return result;
       try {
         for (const rclcpp::Parameter& one : changed) {
-          // Whoever has declared it before may not have made it read-only.
+          // If it was declared before, it may not be read-only.
           if (one.get_name() == prefix_ + "display_contacts_topic" && !(one == node_.get_parameter(one.get_name()))) {
             throw std::invalid_argument(one.get_name() + " counts when the pipeline starts, and not after");
           }
@@ -95,7 +95,7 @@ class Parameters {
       out.certifier.time_limit = number("time_limit", changed);
       out.certifier.check();
       const double budget = number("budget", changed);
-      if (!(budget >= 0 && budget <= kMostBudget) || budget != std::floor(budget)) {
+      if (!(budget >= 0 && budget <= kMaxBudget) || budget != std::floor(budget)) {
         throw std::invalid_argument("budget is " + std::to_string(budget) + "; it has to be a whole number, 0 or more");
       }
       out.certifier.budget = static_cast<std::uint64_t>(budget);
@@ -135,7 +135,7 @@ class Parameters {
     } else if (value.get_type() == rclcpp::ParameterType::PARAMETER_INTEGER) {
       descriptor.integer_range.resize(1);
       descriptor.integer_range[0].from_value = static_cast<std::int64_t>(least);
-      descriptor.integer_range[0].to_value = static_cast<std::int64_t>(kMostBudget);
+      descriptor.integer_range[0].to_value = static_cast<std::int64_t>(kMaxBudget);
     }
     const std::string full = prefix_ + name;
     if (!node_.has_parameter(full)) {
@@ -195,7 +195,8 @@ visualization_msgs::msg::Marker redMarker(const std::string& frame, const rclcpp
   return marker;
 }
 
-/// What was shown before goes; of each contact: a ball where it is, an arrow along the normal, the two names.
+/// Removes the markers that were shown before. Each contact gets a ball where it is, an arrow along the normal, and the
+/// two names.
 visualization_msgs::msg::MarkerArray markersOf(const std::vector<Verdict::Contact>& contacts, const std::string& frame,
                                                const rclcpp::Time& now) {
   using visualization_msgs::msg::Marker;
@@ -254,7 +255,7 @@ class CertifySolution : public planning_interface::PlanningResponseAdapter {
       Settings settings = parameters_->settings();
       if (settings.certifier.time_limit == 0)
         settings.certifier.time_limit = std::max(0.0, request.allowed_planning_time);
-      // As planners begin: the scene's state, and what the request says of it.
+      // The start that planners take: the scene's state, with the request's changes.
       const moveit::core::RobotStatePtr start = scene->getCurrentStateUpdated(request.start_state);
       Verdict verdict = certifier_.certify(*scene->getCollisionEnv(), scene->getAllowedCollisionMatrix(),
                                            *response.trajectory, start.get(), settings.certifier);
@@ -279,7 +280,7 @@ class CertifySolution : public planning_interface::PlanningResponseAdapter {
   }
 
  private:
-  /// Puts a way around in the trajectory's and the verdict's place; where there is none, the message says why.
+  /// Puts a way around in place of the trajectory and the verdict. If there is none, the message says why.
   void repair(const planning_scene::PlanningScene& scene, const planning_interface::MotionPlanRequest& request,
               Settings& settings, planning_interface::MotionPlanResponse& response, Verdict& verdict) const {
     settings.how.velocity_scaling = request.max_velocity_scaling_factor;

@@ -67,7 +67,7 @@ std::vector<VectorXd> waypointsOf(const RobotTree& robot, const RobotTrajectory&
     }
     for (int v = 0; v < robot.tree->dof(); ++v) {
       if (in_group[static_cast<std::size_t>(v)]) continue;
-      // A follower that stands where it was measured is put where its master has it by many a planner.
+      // Many planners put a follower that stands where it was measured to the place where its master has it.
       const bool follows = model.getJointModel(robot.tree->joint(robot.tree->variableJoint(v)).name)->getMimic();
       if (std::abs(out[k][v] - out[0][v]) > (follows ? std::max(kSame, mimic_tolerance) : kSame)) {
         refuse(waypoint(k) + ": '" + robot.tree->variableName(v) + "' moves from " + shown(out[0][v]) + " to " +
@@ -139,7 +139,8 @@ void requireNoTurningRates(const RobotTree& robot, const std::vector<VectorXd>& 
   }
 }
 
-/// Half a turn from one waypoint to the next says not which way round, and executors have rules of their own.
+/// Refuses half a turn from one waypoint to the next: it does not say which way round, and executors have rules of
+/// their own.
 void requireSenses(const RobotTree& robot, const std::vector<VectorXd>& q) {
   for (fcl_artic::JointId j = 0; j < robot.tree->numJoints(); ++j) {
     const int v = robot.tree->quaternionVariable(j);
@@ -152,7 +153,7 @@ void requireSenses(const RobotTree& robot, const std::vector<VectorXd>& q) {
   }
 }
 
-/// What MoveIt's joints mean that this library's do not, or the other way round.
+/// Notes and refusals where MoveIt's joints mean something that this library's do not, or the other way round.
 void judgeJoints(const RobotTree& robot, const RobotTrajectory& trajectory, const std::vector<VectorXd>& q,
                  Interpolation kind, const MotionOptions& options) {
   const bool controller = fcl_artic::isController(options.interpolation);

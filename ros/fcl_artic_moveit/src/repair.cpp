@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Ways around what a trajectory touches. (Needs fcl_artic's component ompl.)
+// Ways around the obstacles that a trajectory touches. (Needs fcl_artic's component ompl.)
 #include <stdexcept>
 
 #include "fcl_artic_moveit/certifier.h"
@@ -19,8 +19,8 @@ namespace planning = fcl_artic::planning;
 using robot_trajectory::RobotTrajectory;
 using robot_trajectory::RobotTrajectoryPtr;
 
-// The time parameterization rounds corners by so much, rad or m: what is nearer is met, so each is certified, the
-// roundest first.
+// The time parameterization rounds corners by this much, rad or m. A rounded corner may touch an obstacle that is
+// nearer, so each rounding is certified, the roundest first.
 constexpr double kRoundings[] = {1e-2, 1e-3, 1e-4};
 
 /// Waypoints of all variables as a trajectory, with all else as on the first waypoint of another.

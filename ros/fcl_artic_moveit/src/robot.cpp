@@ -73,7 +73,7 @@ Joint jointOf(const JointModel& from, const std::string& parent, bool stands) {
   return joint;
 }
 
-/// The model's frame as the tree's root link, where it is no link of the model.
+/// Adds the model's frame as the tree's root link, if it is no link of the model.
 std::string addRoot(const moveit::core::RobotModel& model, KinematicTree& tree) {
   const std::string& frame = model.getModelFrame();
   std::string name = frame.empty() ? "model_frame" : frame;
@@ -100,7 +100,7 @@ RobotTree toTree(const moveit::core::RobotModel& model, const std::set<std::stri
   std::string root;
   if (hasVirtualJoint(model)) root = addRoot(model, *tree);
   for (const moveit::core::LinkModel* link : model.getLinkModels()) tree->addLink(link->getName());
-  // Who mimics comes after whom it mimics; all others keep the model's order.
+  // A joint that mimics another comes after it; all others keep the model's order.
   std::deque<Joint> followers;
   for (const JointModel* joint : model.getJointModels()) {
     if (joint == model.getRootJoint() && root.empty()) continue;

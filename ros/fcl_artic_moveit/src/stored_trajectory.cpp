@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A planner that plans nothing: its plan is the trajectory that the request brings along, so that the services and
-// actions of move_group certify stored trajectories in the scene of the moment.
+// A planner that plans nothing: its plan is the trajectory that the request brings along. So the services and actions
+// of move_group certify stored trajectories in the scene of the moment.
 #include <algorithm>
 #include <memory>
 #include <set>
@@ -33,8 +33,8 @@ const trajectory_msgs::msg::JointTrajectory& storedOf(const planning_interface::
   return request.reference_trajectories[0].joint_trajectory[0];
 }
 
-/// MoveIt takes numbers by their places, and passes over names that it does not know. A joint outside the group would
-/// be certified where the message has it, which is not where the robot has it.
+/// MoveIt takes numbers by their places, and passes over names that it does not know. So a joint outside the group
+/// would be certified where the message has it, and not where the robot has it.
 void requireFits(const trajectory_msgs::msg::JointTrajectory& stored, const moveit::core::JointModelGroup& group) {
   const std::vector<std::string>& known = group.getVariableNames();
   std::set<std::string> seen;

@@ -58,8 +58,8 @@ inline std::string joint(const std::string& name, const std::string& type, const
          "'/><origin xyz='" + at + "' rpy='" + rpy + "'/>" + limit + more + "</joint>";
 }
 
-/// A rail along x carries an arm that turns about z, which carries a finger at its end: the boxes of rail and arm
-/// overlap where they are joined, arm and finger do not touch. `srdf` is put into the SRDF.
+/// A rail along x carries an arm that turns about z, which carries a finger at its end. The boxes of rail and arm
+/// overlap where they are joined; arm and finger do not touch. `srdf` is put into the SRDF.
 inline moveit::core::RobotModelConstPtr slider(
     const std::string& srdf = "<disable_collisions link1='cart' link2='arm'/>", const std::string& more = "") {
   return modelOf("<robot name='slider'>" + boxLink("base", 0.1, 0.1, 0.1, "0 0 -1") + boxLink("cart", 0.2, 0.2, 0.2) +
@@ -101,7 +101,7 @@ struct Surroundings {
     to.attachBody(id, pose, {shape}, EigenSTL::vector_Isometry3d{Eigen::Isometry3d::Identity()}, touch_links, link);
     to.update();
   }
-  /// What PlanningScene::checkCollision() does: links against the world padded, against each other not.
+  /// PlanningScene::checkCollision(): links against the world padded, against each other not.
   bool moveitCollides(const moveit::core::RobotState& at, const std::string& group = "") const {
     collision_detection::CollisionRequest request;
     request.group_name = group;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What lies between the waypoints, what is refused, and the verdict.
+// The curves between waypoints, the refusals, and the verdict.
 #include <atomic>
 #include <cmath>
 #include <iostream>
@@ -350,7 +350,7 @@ TEST(Certifier, BudgetThatRunsOutIsUndecided) {
 }
 
 /// Swings through the pole between two valid waypoints: a way around is found, timed within the joints' limits, and
-/// certified as any other; untimed ways stay untimed. What begins in contact has none.
+/// certified as any other; untimed ways stay untimed. A trajectory that begins in contact has none.
 TEST(Certifier, RepairGoesAround) {
   if (!Certifier::canRepair()) GTEST_SKIP() << "built without fcl_artic's component ompl";
   Surroundings all(slider());

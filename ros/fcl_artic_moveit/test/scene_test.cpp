@@ -205,7 +205,7 @@ TEST(Scene, PaddingIsADistanceToTheWorldOnly) {
   EXPECT_FALSE(all.moveitCollides(all.state, "all"));
   EXPECT_TRUE(at(0.2));
   EXPECT_FALSE(at(0));
-  // What a link carries is padded as the link.
+  // A body that a link carries is padded as the link.
   all.attach("tool", "finger", std::make_shared<shapes::Box>(0.1, 0.1, 0.1), {0.1, 0.3, 0}, {"finger"});
   all.add("post", std::make_shared<shapes::Box>(0.1, 0.1, 0.1), {1.1, 0.5, 0});  // 0.1 m from the tool
   EXPECT_FALSE(at(0));
@@ -268,7 +268,8 @@ TEST(Scene, AttachedBodies) {
   EXPECT_FALSE(collides(cell, all, "all"));
 }
 
-/// What is the same is kept, what changes is not: an object that comes, moves and goes, one that is taken up.
+/// Bodies that stay the same are kept, bodies that change are not: an object that comes, moves and goes, one that is
+/// taken up.
 TEST(Scene, ChangesArriveAndTheRobotStays) {
   Surroundings all(slider());
   Cell cell(all.model);

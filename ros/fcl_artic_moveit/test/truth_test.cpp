@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random trajectories of a Panda among boxes, a mesh and an octomap, with a body in its hand: beside the same world
-// read by this project's own URDF and SRDF readers, which know no MoveIt, and beside FCL's look at many samples.
+// Random trajectories of a Panda among boxes, a mesh and an octomap, with a body in its hand. The verdicts are compared
+// with those for the same world read by this project's own URDF and SRDF readers, which know no MoveIt. They are also
+// compared with FCL's look at many samples.
 #include <ctime>
 #include <iostream>
 

@@ -26,8 +26,8 @@ double shorterWay(double d) {
   return d > kPi ? d - 2 * kPi : d < -kPi ? d + 2 * kPi : d;
 }
 
-/// The way over π is that of the joint only when a whole turn leaves every pose as it is, and no limit lies on it: a
-/// drive goes from 2.8 to -2.8 through 0 then.
+/// The shorter way over π is the joint's way only if a whole turn leaves every pose as it is, and no limit lies on that
+/// way. Otherwise a drive goes from 2.8 to -2.8 through 0.
 void requireWholeTurns(const KinematicTree& tree, int variable, const std::string& where) {
   const std::string& name = tree.variableName(variable);
   if (!tree.isAngle(variable)) {
@@ -51,8 +51,8 @@ void requireWholeTurns(const KinematicTree& tree, int variable, const std::strin
 }
 
 /// w(1) of the turn from q0 to q1 at nearly half a turn, where either way round is the shortest but for rounding: the
-/// one that SO3StateSpace::interpolate() takes. It is asked, as the same sum has another sign where OMPL's compiler has
-/// fused what this one's has not.
+/// one that SO3StateSpace::interpolate() takes. That function is called here: a sum of our own could have another sign,
+/// if OMPL's compiler fuses operations that ours does not.
 Eigen::Vector3d halfTurn(const Eigen::Vector4d& q0, const Eigen::Vector4d& q1) {
   const auto stateOf = [](const Eigen::Vector4d& q, ob::SO3StateSpace::StateType& state) {
     state.x = q[0], state.y = q[1], state.z = q[2], state.w = q[3];
@@ -78,7 +78,7 @@ JointMapping::JointMapping(const ob::StateSpace& space, std::shared_ptr<const Ki
   std::vector<unsigned> path;
   collect(space, where, path, parts);
 
-  // Without names the parts take the tree's variables in order, and whole joints where they need them.
+  // Without names the parts take the tree's variables in order, whole joints if they need them.
   std::vector<std::string> names = joints;
   if (joints.empty()) {
     int next = 0;
@@ -115,10 +115,9 @@ JointMapping::JointMapping(const ob::StateSpace& space, std::shared_ptr<const Ki
   tree_->requireConfiguration(others_, "others");
 }
 
-/// A variable that a number may drive by itself: no part of a quaternion, whose parts don't go straight.
+/// The number of a variable that a single number may drive: no part of a quaternion, as these don't go straight.
 int JointMapping::requireVariable(const std::string& name, const std::string& where) const {
-  for (int v = 0; v < tree_->dof(); ++v) {
-    if (tree_->variableName(v) != name) continue;
+  if (const int v = tree_->findVariable(name); v >= 0) {
     const JointId joint = tree_->variableJoint(v);
     const int quaternion = tree_->quaternionVariable(joint);
     if (quaternion < 0 || v < quaternion) return v;
@@ -132,9 +131,8 @@ int JointMapping::requireVariable(const std::string& name, const std::string& wh
 }
 
 int JointMapping::requireJoint(const std::string& name, const Part& part) const {
-  for (JointId j = 0; j < tree_->numJoints(); ++j) {
-    if (tree_->joint(j).name == name && tree_->joint(j).type == part.joint) return tree_->jointVariable(j);
-  }
+  const JointId j = tree_->findJoint(name);
+  if (j >= 0 && tree_->joint(j).type == part.joint) return tree_->jointVariable(j);
   throw std::invalid_argument(part.what + ": '" + name + "' of robot '" + tree_->name() + "' is none");
 }
 

@@ -31,18 +31,18 @@ constexpr double kTwoPi = 6.28318530717958647693;
 constexpr double kRoom = 1;      // m, that positions of planar and floating joints have beyond the plan's own
 constexpr double kLeast = 0.05;  // s, for a stretch
 
-// Pieces that are not free are divided, so that a detour begins and ends near what it goes around: parts of no more
-// than this, rad or m, of any joint, but no more parts than that.
+// A piece that is not free is divided into parts of at most kPart (rad or m, of any joint), but into no more than
+// kMaxParts. So a detour begins and ends near the obstacle that it goes around.
 constexpr double kPart = 0.1;
-constexpr int kMostParts = 64;
-// Parts of the clearance that are tried, one after the other, and of the time that is left for each.
+constexpr int kMaxParts = 64;
+// Parts of the clearance, tried one after the other, and for each its part of the remaining time.
 constexpr double kClearances[] = {1, 0.25, 0}, kShares[] = {0.5, 0.5, 1};
-// A planner's way is brought back towards the plan at points of no more than this, rad or m, from each other.
+// A planner's way is brought back towards the plan at points at most this far (rad or m) from each other.
 constexpr double kPull = 0.2;
 constexpr int kPulls = 3;
 
-// Small detours, by one waypoint or two off the plan: how far each joint goes at most, rad or m, and how often it is
-// tried. They cost some ms where none is found, and keep what they mend near the plan (bench certify).
+// Small detours, by one or two waypoints off the plan: how far each joint goes at most (rad or m), and how often that
+// is tried. They cost some ms if none is found, and keep mended plans near the plan (bench_tables certify).
 constexpr double kNudges[] = {0.01, 0.02, 0.05, 0.1, 0.2, 0.4};
 constexpr int kTries = 48, kShrinks = 5;
 
@@ -96,11 +96,11 @@ struct Straight {
   }
 };
 
-/// @param isFree  of a piece: those that are not are divided.
+/// @param way  the straight way through the given points.
+/// @param isFree  whether a piece is free: other pieces are divided.
 template <class IsFree>
-Straight straightOf(const KinematicTree& tree, const Waypoints& given, JointTrajectory::Unwrap unwrap,
+Straight straightOf(const KinematicTree& tree, const Waypoints& given, const JointTrajectory& way,
                     const IsFree& isFree) {
-  const JointTrajectory way = JointTrajectory::linear(tree, given.times, given.positions, unwrap);
   Straight out;
   const auto add = [&](VectorXd q, double t, bool given) {
     out.points.push_back(std::move(q));
@@ -110,7 +110,7 @@ Straight straightOf(const KinematicTree& tree, const Waypoints& given, JointTraj
   add(way.piece(0).configuration(0), given.times[0], true);
   for (std::size_t k = 0; k < way.numPieces(); ++k) {
     const JointMotion& piece = way.piece(k);
-    // As the next piece begins: there are the plan's own numbers. At the goal they are the plan's but for whole turns.
+    // The next piece begins with the plan's own numbers. At the goal they are the plan's but for whole turns.
     VectorXd end = k + 1 < way.numPieces() ? way.piece(k + 1).configuration(0) : piece.configuration(1);
     if (k + 1 == way.numPieces()) {
       const VectorXd& goal = given.positions.back();
@@ -118,7 +118,7 @@ Straight straightOf(const KinematicTree& tree, const Waypoints& given, JointTraj
     }
     const bool free = isFree(piece);
     const double step = (end - out.points.back()).lpNorm<Eigen::Infinity>();
-    const int parts = free ? 1 : std::clamp(static_cast<int>(std::ceil(step / kPart)), 1, kMostParts);
+    const int parts = free ? 1 : std::clamp(static_cast<int>(std::ceil(step / kPart)), 1, kMaxParts);
     for (int i = 1; i < parts; ++i) {
       const double share = static_cast<double>(i) / parts;
       const VectorXd q = piece.configuration(share);
@@ -146,7 +146,7 @@ struct Attempt {
 class Mender {
  public:
   Mender(const std::shared_ptr<const ArticulatedCollisionManager>& manager, const Waypoints& given,
-         const std::vector<int>& variables, JointTrajectory::Unwrap unwrap, const MendOptions& options,
+         const JointTrajectory& way, const std::vector<int>& variables, const MendOptions& options,
          const Attempt& attempt)
       : tree_(manager->tree()), options_(options), seconds_(attempt.seconds), variables_(variables), manager_(manager) {
     SetupOptions setup;
@@ -170,7 +170,7 @@ class Mender {
     setup.request.check_scene = options.request.check_scene;
     setup.request.work_budget = options.request.work_budget;
     given_request_ = setup.request;
-    way_ = straightOf(tree_, given, unwrap, [&](const JointMotion& piece) { return isFreeAsGiven(piece); });
+    way_ = straightOf(tree_, given, way, [&](const JointMotion& piece) { return isFreeAsGiven(piece); });
     addBounds(setup);
     setup.request.margin += attempt.clearance;
     request_ = setup.request;
@@ -243,14 +243,14 @@ class Mender {
     }
   }
 
-  /// (Limits of the plan's own points have been judged: a sensor's may be a little beyond them.)
+  /// (The plan's own points have been judged: a sensor's may be a little beyond the limits.)
   bool valid(std::size_t k) const {
     CertifiedRequest any = request_;
     any.max_contacts = 0;
     return manager_->collide(way_.points[k], any).isFree();
   }
 
-  /// Finds a way around what the piece from waypoint k on touches.
+  /// Finds a way around the obstacles that the piece from waypoint k on touches.
   /// @return the waypoint where it ends.
   std::size_t replace(std::size_t k, Clock::time_point begin) {
     const std::size_t last = way_.points.size() - 1;
@@ -294,13 +294,13 @@ class Mender {
             way_.points.begin() + static_cast<std::ptrdiff_t>(b) + 1};
   }
 
-  /// Brings inner points of a way nearer to what it replaces, as far as all stays free.
+  /// Brings inner points of a way nearer to the stretch that it replaces, as far as all stays free.
   void pullBack(const Points& before, Points& points) const {
     if (hasRotations() || points.back() != before.back()) return;  // the latter by whole turns
     Points fine{points.front()};
     for (std::size_t i = 1; i < points.size(); ++i) {
       const VectorXd step = points[i] - points[i - 1];
-      const int parts = std::clamp(static_cast<int>(std::ceil(step.lpNorm<Eigen::Infinity>() / kPull)), 1, kMostParts);
+      const int parts = std::clamp(static_cast<int>(std::ceil(step.lpNorm<Eigen::Infinity>() / kPull)), 1, kMaxParts);
       for (int k = 1; k < parts; ++k) fine.push_back(points[i - 1] + static_cast<double>(k) / parts * step);
       fine.push_back(points[i]);
     }
@@ -336,7 +336,7 @@ class Mender {
     return true;
   }
 
-  /// Where on the stretch, as a share of its length, something is met first from its begin, or from its end.
+  /// Share of the stretch's length at which something is met first, from its begin or from its end.
   double meets(const Points& points, bool from_end) const {
     CertifiedRequest request = request_;
     request.mode = ContactMode::first;
@@ -356,7 +356,7 @@ class Mender {
     return 0.5;
   }
 
-  /// Tries ways from waypoint a to b that leave the plan by a little, around what is met on them.
+  /// Tries ways from waypoint a to b that leave the plan by a little, around the obstacles on it.
   std::optional<Points> nudge(std::size_t k, std::size_t a, std::size_t b) {
     if (hasRotations()) return std::nullopt;
     const Points before = stretch(a, b);
@@ -474,10 +474,50 @@ class Mender {
   std::vector<Detour> detours_;  ///< in their order, none within another
 };
 
+void requireOptions(const MendOptions& options) {
+  std::ostringstream why;
+  if (!(options.seconds > 0 && std::isfinite(options.seconds))) {
+    why << "mend: options.seconds is " << options.seconds << ", not a number above 0";
+  } else if (!(options.clearance >= 0 && std::isfinite(options.clearance))) {
+    why << "mend: options.clearance is " << options.clearance << ", not a number of at least 0 (m)";
+  }
+  if (!why.str().empty()) throw std::invalid_argument(why.str());
+}
+
+/// Detours move the variables, and no others: those stay where the first waypoint has them.
+/// @param positions  each of the tree.
+void requireVariables(const KinematicTree& tree, const Points& positions, const std::vector<int>& variables) {
+  const auto refuse = [](const std::string& why) { throw std::invalid_argument("mend: " + why); };
+  if (variables.empty()) refuse("`variables` is empty: no joint may move");
+  std::vector<bool> may_move(static_cast<std::size_t>(tree.dof()));
+  for (const int v : variables) {
+    if (v < 0 || v >= tree.dof()) {
+      refuse("`variables` holds " + std::to_string(v) + "; robot '" + tree.name() + "' has variables 0 to " +
+             std::to_string(tree.dof() - 1));
+    }
+    if (may_move[static_cast<std::size_t>(v)]) {
+      refuse("`variables` holds " + std::to_string(v) + " ('" + tree.variableName(v) + "') twice");
+    }
+    may_move[static_cast<std::size_t>(v)] = true;
+  }
+  for (int v = 0; v < tree.dof(); ++v) {
+    for (std::size_t k = 1; !may_move[static_cast<std::size_t>(v)] && k < positions.size(); ++k) {
+      if (positions[k][v] == positions[0][v]) continue;
+      refuse("'" + tree.variableName(v) + "' (" + std::to_string(v) + ") is not in `variables`, and waypoint " +
+             std::to_string(k) + " has it elsewhere than waypoint 0: add it");
+    }
+  }
+}
+
 }  // namespace
 
 Mended mend(const std::shared_ptr<const ArticulatedCollisionManager>& manager, const Waypoints& given,
             const std::vector<int>& variables, JointTrajectory::Unwrap unwrap, const MendOptions& options) {
+  if (!manager) throw std::invalid_argument("mend: the manager is null");
+  requireOptions(options);
+  const KinematicTree& tree = manager->tree();
+  const JointTrajectory way = JointTrajectory::linear(tree, given.times, given.positions, unwrap);
+  requireVariables(tree, given.positions, variables);
   const Clock::time_point begin = Clock::now();
   for (std::size_t i = 0;; ++i) {
     const bool last = kClearances[i] == 0;
@@ -485,7 +525,7 @@ Mended mend(const std::shared_ptr<const ArticulatedCollisionManager>& manager, c
     try {
       const double kept = kClearances[i] * options.clearance;
       const double seconds = kShares[i] * (options.seconds - secondsSince(begin));
-      Mended out = Mender(manager, given, variables, unwrap, options, {kept, seconds}).run();
+      Mended out = Mender(manager, given, way, variables, options, {kept, seconds}).run();
       out.kept = kept;
       out.ms = 1e3 * secondsSince(begin);
       return out;

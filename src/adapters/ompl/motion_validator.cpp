@@ -12,7 +12,7 @@ namespace {
 namespace ob = ::ompl::base;
 using ManagerPtr = std::shared_ptr<const ArticulatedCollisionManager>;
 
-/// Where answers go: memory only, nothing is read from the last one.
+/// Memory for answers: nothing is read from the last one.
 CertifiedResult& scratch() {
   thread_local CertifiedResult result;
   return result;
@@ -29,7 +29,7 @@ const ArticulatedCollisionManager& requireStill(const ArticulatedCollisionManage
       "the manager about the whole trajectory with its times");
 }
 
-/// What the constructors are given, refused before any of it is used.
+/// Checks the constructors' arguments before any of them is used.
 const ob::SpaceInformationPtr& required(const ob::SpaceInformationPtr& si, const ManagerPtr& manager) {
   if (!si) throw std::invalid_argument("planning: the space information is null");
   if (!manager) throw std::invalid_argument("planning: the manager is null");
@@ -71,23 +71,23 @@ CertifiedRequest planningRequest() {
   return request;
 }
 
-// What planners may rely on. M is a pair's margin, its own or the request's, with what the request adds to it, and
-// delta the request's tolerance_distance. A state s is *apart* when collide() proves, at the configuration that the
-// mapping reads from s, that all pairs are farther than M + delta from each other: roomAt(s).
+// A lemma for planners. M is a pair's margin, its own or the request's, with what the request adds to it, and delta the
+// request's tolerance_distance. A state s is *apart* when collide() proves, at the configuration that the mapping reads
+// from s, that all pairs are farther than M + delta from each other: roomAt(s).
 //
 // Lemma. Let s_0, ..., s_n be states of which each motion s_k -> s_k+1 was accepted, or s_k+1 is the last valid state,
-// at a time > 0, of a motion from s_k. With ignore_initial_contact nothing comes within its margin on any s_k -> s_k+1
-// with k >= 1, no pair excepted; on s_0 -> s_1 only pairs are excepted that touch at s_0 (that no proof holds apart
-// there), until they have separated, and none where s_0 is apart. Without ignore_initial_contact nothing is excepted at
-// all.
+// at a time > 0, of a motion from s_k. With ignore_initial_contact: on any s_k -> s_k+1 with k >= 1 nothing comes
+// within its margin, no pair excepted. On s_0 -> s_1 the only exceptions are pairs that touch at s_0 (no proof holds
+// them apart there), until they have separated. If s_0 is apart, there is no exception. Without ignore_initial_contact
+// nothing is excepted at all.
 //
 // Proof. Each s_k -> s_k+1 is proven by provenFree(), that to a last valid state too, but for pairs that are ignored.
 // Its end is apart (1): both checkMotion() ask roomAt(s_k+1). From a state that is apart nothing is ignored (2):
 // ignoring() asks roomAt(s_k), the same query of the same numbers, which gives the same answer. QED
 //
-// Neither the kind of planner nor the order of its questions matters, as both are questions about a state. (2) is what
-// makes it a proof: that a pair which is delta from touching is seen to be apart at t = 0 by a query that ignores what
-// is not, nothing promises.
+// Neither the kind of planner nor the order of its questions matters, as both are questions about a state. The proof
+// needs (2). Take a pair that is delta from touching: nothing promises that a query which ignores initial contacts sees
+// it as apart at t = 0.
 //
 // The room is added to every pair's margin (added_margin), those of its own too. A pair whose own margin is 0, beside a
 // request with a larger one, has the room as others do.
@@ -99,7 +99,8 @@ ContinuousMotionValidator::ContinuousMotionValidator(const ob::SpaceInformationP
       any_(asked(request, ContactMode::any)),
       first_(asked(request, ContactMode::first)),
       apart_(askedOfState(request)) {
-  // Twice what a state must have: the state is the motion's up to roundings, and a query may leave the last half open.
+  // Twice the room that a state must have: the state is the motion's up to roundings, and a query may leave the last
+  // half open.
   first_.added_margin += 2 * request.tolerance_distance;
   apart_.added_margin += request.tolerance_distance;
   apart_.tolerance_distance *= 0.5;
@@ -137,9 +138,9 @@ bool ContinuousMotionValidator::provenFree(const JointMotion& motion, const ob::
   return result.isFree() && (!any_.ignore_initial_contact || roomAt(s2));
 }
 
-/// The gap at the first contact's t_lower may be next to nothing: planners would go on from a state that no motion
-/// leaves, and that no proof separates from contact. So the time is asked for with more margin; the verdict is not.
-/// What is ignored as it is within that at the start must not touch without it.
+/// The gap at the first contact's t_lower may be tiny: planners would go on from a state that no motion can leave, and
+/// that no proof separates from contact. So the time, but not the verdict, is asked for with a larger margin. A pair
+/// that is ignored because it is within the larger margin at the start must still not touch without that margin.
 /// @return a time up to which the motion is proven free; 1: all of it.
 double ContinuousMotionValidator::timeWithRoom(const JointMotion& motion, bool ignoring) const {
   CertifiedResult& result = scratch();
@@ -179,8 +180,8 @@ bool ContinuousMotionValidator::checkMotion(const ob::State* s1, const ob::State
   throw;
 }
 
-/// The base class counts in plain members and its getters can't be overridden: so its members are what is counted in,
-/// by atomic additions (C++17 has none for an integer that is not std::atomic, GCC and Clang have).
+/// The base class counts in plain members, and its getters can't be overridden. So its members are counted up by atomic
+/// additions, which GCC and Clang have. (C++17 has none for an integer that is not std::atomic.)
 bool ContinuousMotionValidator::count(bool valid) const {
   __atomic_fetch_add(valid ? &valid_ : &invalid_, 1u, __ATOMIC_RELAXED);
   return valid;

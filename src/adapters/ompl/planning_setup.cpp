@@ -26,9 +26,7 @@ std::vector<std::string> variableNames(const KinematicTree& tree) {
 }
 
 int requireVariable(const KinematicTree& tree, const std::string& name, const std::string& what) {
-  for (int v = 0; v < tree.dof(); ++v) {
-    if (tree.variableName(v) == name) return v;
-  }
+  if (const int v = tree.findVariable(name); v >= 0) return v;
   throw std::invalid_argument(what + ": robot '" + tree.name() + "' has no joint '" + name +
                               "' with a value of its own (it is unknown, fixed or a mimic)" +
                               text::didYouMean(name, variableNames(tree)));
@@ -39,23 +37,23 @@ bool answerable(double value) {
   return std::abs(value) <= 1e5;
 }
 
-/// It has one value only, which is that of the joints that are not planned for.
+/// Whether the joint has one value only: then it stands with the joints that are not planned for.
 bool standsStill(const Joint& joint) {
   return hasLimits(joint) && joint.lower == joint.upper;
 }
 
 /// A joint that can be planned for.
 const Joint& requireJoint(const KinematicTree& tree, const std::string& name) {
-  for (JointId j = 0; j < tree.numJoints(); ++j) {
+  if (const JointId j = tree.findJoint(name); j >= 0) {
     const Joint& joint = tree.joint(j);
-    if (joint.name == name && !joint.mimics && joint.type != JointType::fixed) return joint;
+    if (!joint.mimics && joint.type != JointType::fixed) return joint;
   }
   throw std::invalid_argument("setUpPlanning: robot '" + tree.name() + "' has no joint '" + name +
                               "' that can be planned for (it is unknown, fixed or a mimic)" +
                               text::didYouMean(name, variableNames(tree)));
 }
 
-/// The space of a joint that is no number within limits.
+/// The space of a joint whose value is not one number within limits.
 ob::StateSpacePtr wholeJointSpace(const Joint& joint, const SetupOptions& options) {
   const auto bounds = [&](unsigned dimensions) {
     ob::RealVectorBounds b(dimensions);
@@ -183,7 +181,7 @@ void PlanningSetup::setState(ob::State* state, const std::vector<double>& values
 
 std::vector<double> PlanningSetup::values(const ob::State* state) const {
   std::vector<double> values;
-  // OMPL gives addresses of a state that may be written to; it is not.
+  // OMPL gives only addresses that may be written to; this does not write.
   forEachPart(*space, const_cast<ob::State*>(state), [&](const ob::StateSpace& part, ob::State* values_of_part) {
     for (unsigned i = 0; const double* value = part.getValueAddressAtIndex(values_of_part, i); ++i) {
       values.push_back(*value);

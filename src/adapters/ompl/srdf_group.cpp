@@ -66,8 +66,8 @@ class GroupReader {
     if (!tree_.hasLink(value)) fail(e, "names link '" + value + "', which robot '" + tree_.name() + "' does not have");
     return tree_.linkId(value);
   }
-  /// A virtual joint fixes the robot to the world, where its root link is already; one that moves the base can't be
-  /// had.
+  /// A virtual joint that fixes the robot to the world changes nothing: the root link is there already. A virtual joint
+  /// that moves the base is refused.
   void addJoint(const Element& e, std::set<JointId>& to) const {
     const std::string name = attribute(e, "name");
     for (JointId j = 0; j < tree_.numJoints(); ++j) {

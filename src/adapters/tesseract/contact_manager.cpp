@@ -44,7 +44,8 @@ struct Object {
   int variable = -1;    ///< its first one, if it is active
 };
 
-/// As the manager has it of obstacles' poses. (An active object's becomes a quaternion, which any matrix would give.)
+/// Requires of every pose what the manager requires of obstacles' poses. (An active object's pose becomes a quaternion,
+/// which any matrix would give.)
 void requirePose(const ObjectId& id, const Eigen::Isometry3d& pose) {
   if (!pose.matrix().allFinite() || pose.translation().cwiseAbs().maxCoeff() > 1e5) {
     throw std::invalid_argument("object '" + id.name() + "' has a pose that is not finite or farther than 1e5 m away");
@@ -73,7 +74,7 @@ struct TesseractContactManager::Impl {
   std::shared_ptr<const common::ContactAllowedValidator> validator;
   CertifiedResult result;
 
-  // What the next query has to make anew.
+  // Parts of the manager that the next query has to make anew.
   bool other_objects = true, other_margins = true;
   std::set<const Object*> moved;  ///< still ones that stand elsewhere
   std::shared_ptr<KinematicTree> tree;
@@ -341,7 +342,7 @@ bool TesseractContactManager::addCollisionObject(const ObjectId& id, const int& 
       throw std::invalid_argument("object '" + id.name() + "', shape " + std::to_string(i) + ": " + e.what());
     }
   }
-  // One that moves goes on moving: as an obstacle at its first pose nobody would look at its way.
+  // An object that moves goes on moving: if it became an obstacle at its first pose, nobody would check its way.
   const bool was_active = impl_->active.count(id) > 0;
   removeCollisionObject(id);
   if (was_active) impl_->active.insert(id);

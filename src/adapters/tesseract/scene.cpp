@@ -21,7 +21,7 @@ namespace scene_graph = ::tesseract::scene_graph;
 using TesseractId = ::tesseract::common::LinkId;
 using ::tesseract::common::LinkIdPair;
 
-/// All states name the joints that the first one names, and what no state names has a value of its own.
+/// All states must name the joints that the first one names, and other joints must have a value of their own.
 void requireAllNamed(const KinematicTree& tree, const std::vector<bool>& named, const std::vector<bool>& named_first,
                      std::size_t state, bool others) {
   const std::string where = "state " + std::to_string(state) + ": ";
@@ -38,7 +38,7 @@ void requireAllNamed(const KinematicTree& tree, const std::vector<bool>& named, 
 }
 
 /// One geometry of a link.
-struct Body {
+struct LinkShape {
   std::string link;  ///< tesseract's
   std::string name;  ///< in the manager
   std::shared_ptr<fcl::CollisionGeometryd> geometry;
@@ -60,14 +60,14 @@ class Reader {
     for (std::size_t a = 0; a < bodies_.size(); ++a) {
       for (std::size_t b = a + 1; b < bodies_.size(); ++b) readPair(bodies_[a], bodies_[b]);
     }
-    for (const Body& body : bodies_) {
+    for (const LinkShape& body : bodies_) {
       if (isStill(body) || body.attached) continue;
       tree_->addLink(body.name);
       tree_->addJoint(Joint::fixed(unused(body.name), body.link, body.name, body.offset));
     }
     scene_.tree = tree_;
     scene_.manager = std::make_shared<ArticulatedCollisionManager>(scene_.tree);
-    for (const Body& body : bodies_) add(body);
+    for (const LinkShape& body : bodies_) add(body);
     scene_.manager->setAllowedCollisions(std::move(allowed_));
     setMargins();
     scene_.manager->setup();
@@ -82,7 +82,7 @@ class Reader {
   }
 
   void readJoints() {
-    // From the root on, so that the variables' order is the robot's; who mimics comes after whom it mimics.
+    // From the root on, so that the variables' order is the robot's. A joint that mimics another comes after it.
     std::deque<TesseractId> links{graph_.getRoot()};
     std::deque<std::shared_ptr<const scene_graph::Joint>> followers;
     tree_->addLink(graph_.getRoot().name());
@@ -164,7 +164,7 @@ class Reader {
         throw std::invalid_argument("fromTesseract: link '" + link.getName() + "': " + e.what());
       }
       for (auto& geometry : geometries) {
-        Body body;
+        LinkShape body;
         body.link = link.getName();
         body.name = unused(link.getName() + "/" + std::to_string(count++));
         body.geometry = std::move(geometry);
@@ -181,10 +181,10 @@ class Reader {
     }
     return link;
   }
-  LinkId groupOf(const Body& body) const { return group(tree_->linkId(body.link)); }
-  bool isStill(const Body& body) const { return tree_->parentJoint(groupOf(body)) < 0; }
+  LinkId groupOf(const LinkShape& body) const { return group(tree_->linkId(body.link)); }
+  bool isStill(const LinkShape& body) const { return tree_->parentJoint(groupOf(body)) < 0; }
 
-  void readPair(Body& a, Body& b) {
+  void readPair(LinkShape& a, LinkShape& b) {
     if (a.link == b.link) {
       allowed_.allow(a.name, b.name);
       return;
@@ -204,13 +204,13 @@ class Reader {
     if (isStill(a) || isStill(b)) return;  // one of them an obstacle
     checked_.emplace(std::min(a.name, b.name), std::max(a.name, b.name));
     if (a.attached || b.attached) return;
-    // One joint between them: neighbours, whom a manager leaves out, unless one is attached.
+    // If one joint lies between them, they are neighbours, whom a manager may leave out, unless one is attached.
     const auto above = [&](LinkId child) { return group(tree_->parentLink(child)); };
     if (above(x) == y) a.attached = true;
     if (above(y) == x) b.attached = true;
   }
 
-  void add(const Body& body) {
+  void add(const LinkShape& body) {
     std::vector<Eigen::Isometry3d> M_0;
     tree_->forwardKinematics(tree_->neutralConfiguration(), M_0);
     const Eigen::Isometry3d pose = M_0[static_cast<std::size_t>(tree_->linkId(body.link))] * body.offset;
@@ -234,9 +234,9 @@ class Reader {
     if (!(most > 0)) return;
     scene_.has_margins = true;
     const double other = std::max(margins_.getDefaultCollisionMargin(), 0.0);
-    for (const Body& a : bodies_) {
+    for (const LinkShape& a : bodies_) {
       scene_.manager->setMargin(a.name, other);
-      for (const Body& b : bodies_) {
+      for (const LinkShape& b : bodies_) {
         const auto own = margins_.getCollisionMarginPairData().getCollisionMargin(
             LinkIdPair(TesseractId(a.link), TesseractId(b.link)));
         if (own && a.name < b.name) scene_.manager->setMargin(a.name, b.name, std::max(*own, 0.0));
@@ -257,7 +257,7 @@ class Reader {
   const ::tesseract::common::CollisionMarginData& margins_;
   std::shared_ptr<KinematicTree> tree_;
   std::set<std::string> names_;
-  std::vector<Body> bodies_;
+  std::vector<LinkShape> bodies_;
   std::set<std::pair<std::string, std::string>> checked_;  ///< names of bodies, the lesser one first
   AllowedCollisionMatrix allowed_;
   TesseractScene scene_;
@@ -293,10 +293,7 @@ JointTrajectory TesseractScene::trajectory(const ::tesseract::common::JointTraje
     std::vector<bool> named(static_cast<std::size_t>(tree->dof()));
     for (std::size_t k = 0; k < state.joint_ids.size(); ++k) {
       const std::string& name = state.joint_ids[k].name();
-      int variable = -1;
-      for (int v = 0; v < tree->dof(); ++v) {
-        if (tree->variableName(v) == name) variable = v;
-      }
+      const int variable = tree->findVariable(name);
       if (variable < 0) {
         throw std::invalid_argument(where + "'" + name + "' is no joint with one variable of its own");
       }

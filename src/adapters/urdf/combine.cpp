@@ -8,9 +8,9 @@
 namespace fcl_artic {
 namespace {
 
-/// What a part's matrix says, with the names of all robots together.
-/// @param spelt_out  whether what a complete matrix says of neighbours has to be said pair by pair, as the matrix of
-///   all robots is not complete.
+/// Adds the pairs of a part's matrix to the matrix of all robots, under the names that the links have there.
+/// @param spelt_out  whether a complete matrix's rule for neighbours must be written pair by pair, as the matrix of all
+///   robots is not complete.
 void addAllowed(const PlacedRobot& part, bool spelt_out, AllowedCollisionMatrix& all) {
   const AllowedCollisionMatrix& own = part.robot->allowed;
   if (spelt_out && own.complete()) {
@@ -28,6 +28,7 @@ void addAllowed(const PlacedRobot& part, bool spelt_out, AllowedCollisionMatrix&
 
 Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& name) {
   auto tree = std::make_shared<KinematicTree>(name);
+  std::vector<Joint> joints;  // of all parts
   Robot all;
   const bool complete = !parts.empty() && std::all_of(parts.begin(), parts.end(), [](const PlacedRobot& part) {
     return part.robot && part.robot->allowed.complete();
@@ -37,8 +38,8 @@ Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& na
     if (!part.robot || !part.robot->tree) throw std::invalid_argument("combineRobots: a robot is null");
     const KinematicTree& own = *part.robot->tree;
     const auto named = [&](const std::string& own_name) { return part.prefix + own_name; };
-    // A mount of its own for each root: robots that stand side by side are no neighbours of each other, also those
-    // that were combined before.
+    // Each root gets a mount of its own: robots that stand side by side, also those that were combined before, are no
+    // neighbours of each other.
     std::vector<LinkId> roots;
     for (LinkId l = 0; l < own.numLinks(); ++l) {
       if (own.parentJoint(l) < 0) roots.push_back(l);
@@ -52,12 +53,11 @@ Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& na
       link[static_cast<std::size_t>(l)] = tree->addLink(named(own.linkName(l)));
     }
     for (const LinkId l : roots) {
-      Joint joint;
+      Joint& joint = joints.emplace_back();
       joint.name = named("mount_to_" + own.linkName(l));
       joint.parent = mountOf(l);
       joint.child = named(own.linkName(l));
       joint.origin = part.base;
-      tree->addJoint(joint);
     }
     // In their own order: masters come before those that mimic them, and variables stay in order.
     for (JointId j = 0; j < own.numJoints(); ++j) {
@@ -66,11 +66,11 @@ Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& na
       joint.parent = named(joint.parent);
       joint.child = named(joint.child);
       if (joint.mimics) joint.mimic.master = named(joint.mimic.master);
-      tree->addJoint(joint);
+      joints.push_back(std::move(joint));
     }
     for (LinkGeometry geometry : part.robot->geometry) {
       geometry.link = link[static_cast<std::size_t>(geometry.link)];
-      // An object for each, as one robot may be there twice; what they show is shared.
+      // Each gets an object of its own, as one robot may be there twice; the geometry is shared.
       const fcl::CollisionObjectd& object = *geometry.object;
       geometry.object = std::make_shared<fcl::CollisionObjectd>(
           std::const_pointer_cast<fcl::CollisionGeometryd>(object.collisionGeometry()), object.getTransform());
@@ -79,6 +79,7 @@ Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& na
     addAllowed(part, !complete, all.allowed);
     for (const std::string& note : part.robot->notes) all.notes.push_back(note);
   }
+  tree->addJoints(joints);
   all.tree = std::move(tree);
   return all;
 }

@@ -46,8 +46,8 @@ class MemoryStream : public Assimp::IOStream {
   std::size_t at_ = 0;
 };
 
-/// Reads whole files for assimp, whose own streams take an error for the file's end. Keeps the first error. The mesh
-/// itself is what was looked at before, even when the file has changed since.
+/// Reads whole files for assimp, whose own streams take an error for the file's end. Keeps the first error. The mesh's
+/// own content is the one that was read before, even if the file has changed since.
 class CheckedFiles : public Assimp::IOSystem {
  public:
   CheckedFiles(std::string path, std::string_view content) : path_(std::move(path)), content_(content) {}
@@ -89,7 +89,7 @@ void collect(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& M_
       const Eigen::Vector4d x(part.mVertices[v].x, part.mVertices[v].y, part.mVertices[v].z, 1);
       soup.vertices.push_back((M * x).head<3>());
     }
-    // assimp's own step that cuts polygons ends the process for some of them, as of nine times one corner.
+    // Polygons are cut here: assimp's own step ends the process for some of them, such as nine times one corner.
     for (unsigned f = 0; f < part.mNumFaces; ++f) {
       corners.clear();
       for (unsigned k = 0; k < part.mFaces[f].mNumIndices; ++k) corners.push_back(first + part.mFaces[f].mIndices[k]);
@@ -102,7 +102,7 @@ void collect(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& M_
 }  // namespace
 
 meshes::TriangleSoup importMesh(const meshes::Source& source, const std::string& ending) {
-  // Of these assimp leaves out units or parts in silence.
+  // Assimp leaves out units or parts of these formats without a message.
   for (const char* lossy : {".3mf", ".amf", ".x3d", ".x3db", ".x3dv"}) {
     if (ending == lossy)
       source.refuse("is of a format (" + ending + ") whose units or parts get lost: save it as STL, OBJ or PLY");

@@ -58,18 +58,18 @@ std::size_t keepUsed(std::vector<Eigen::Vector3d>& vertices, std::vector<fcl::Tr
 }
 
 using Place = std::array<double, 3>;
-using Segment = std::array<Place, 2>;  ///< The smaller end first; both are one of a point.
+using Segment = std::array<Place, 2>;  ///< The smaller end first; a point has both ends in one place.
 
 Segment segmentOf(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const Place p{a[0] + 0.0, a[1] + 0.0, a[2] + 0.0}, q{b[0] + 0.0, b[1] + 0.0, b[2] + 0.0};  // -0 becomes 0
   return {std::min(p, q), std::max(p, q)};
 }
 
-/// Drops triangles that are a segment or a point, as two of their corners are in one place, where that is an edge or a
-/// corner of a triangle that stays: nothing of the surface is lost. @return how many.
+/// Drops triangles that are a segment or a point, as two of their corners are in one place. Each must be an edge or a
+/// corner of a triangle that stays. Nothing of the surface is lost. @return how many.
 std::size_t dropCovered(const std::vector<Eigen::Vector3d>& vertices, std::vector<fcl::Triangle>& triangles) {
   const auto corner = [&](const fcl::Triangle& t, int k) -> const Eigen::Vector3d& { return vertices[t[k % 3]]; };
-  // The corner before the two that are in one place; 3 of other triangles.
+  // The corner before the two that are in one place; 3 for other triangles.
   const auto apexOf = [&](const fcl::Triangle& t) {
     int k = 0;
     while (k < 3 && corner(t, k + 1) != corner(t, k + 2)) ++k;
@@ -140,7 +140,7 @@ GeometryPtr makeCone(double radius, double length, const std::string& where) {
 GeometryPtr makeMesh(std::vector<Eigen::Vector3d> vertices, std::vector<fcl::Triangle> triangles,
                      const std::string& where, std::vector<std::string>* notes, bool solid) {
   if (triangles.empty()) fail(where, "has no triangles");
-  const auto tell = [&](std::size_t count, std::size_t all, const std::string& what) {
+  const auto noteLeftOut = [&](std::size_t count, std::size_t all, const std::string& what) {
     if (notes && count > 0) {
       notes->push_back(where + ": " + std::to_string(count) + " of " + std::to_string(all) + " " + what + " left out");
     }
@@ -160,16 +160,17 @@ GeometryPtr makeMesh(std::vector<Eigen::Vector3d> vertices, std::vector<fcl::Tri
   }
   if (!has_area) fail(where, "has no triangle with an area");
   const std::size_t all_vertices = vertices.size(), all_triangles = triangles.size();
-  tell(keepUsed(vertices, triangles), all_vertices, "vertices belong to no triangle and were");
+  noteLeftOut(keepUsed(vertices, triangles), all_vertices, "vertices belong to no triangle and were");
   if (!solid) {
-    tell(dropCovered(vertices, triangles), all_triangles, "triangles have no area, lie on edges of others and were");
+    noteLeftOut(dropCovered(vertices, triangles), all_triangles,
+                "triangles have no area, lie on edges of others and were");
   }
   keepUsed(vertices, triangles);
   auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
   bool built =
       model->beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size())) == fcl::BVH_OK &&
       model->addSubModel(vertices, triangles) == fcl::BVH_OK;
-  // FCL has copies, and needs much memory for its tree.
+  // Freed here: FCL has copies, and needs much memory for its tree.
   vertices = {};
   triangles = {};
   built = built && model->endModel() == fcl::BVH_OK;
@@ -217,7 +218,7 @@ std::shared_ptr<fcl::CollisionGeometryd> loadMesh(const std::string& path, const
   const std::string content = files::read(path);
   const meshes::Source source{path, content, where, notes};
   meshes::TriangleSoup soup = readMesh(source, collada_up_axis, import_meshes);
-  soup.tell(source);
+  soup.noteSkipped(source);
   meshes::noteComments(source);
   for (Eigen::Vector3d& x : soup.vertices) x = x.cwiseProduct(scale);
   return detail::makeMesh(std::move(soup.vertices), std::move(soup.triangles), where, notes, solid);

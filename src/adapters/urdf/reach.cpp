@@ -33,7 +33,7 @@ double slideUpper(const KinematicTree& tree, JointId j) {
 
 namespace {
 
-/// The same where joints without limits stand still at 0, as planar and floating ones do.
+/// The same, with joints without limits at rest at 0, as planar and floating ones are.
 double limitedSlide(const KinematicTree& tree, JointId j) {
   const double slide = detail::slideUpper(tree, j);
   return std::isfinite(slide) ? slide : 0;

@@ -208,8 +208,8 @@ class MoveItSceneReader {
   SceneBuilder& builder_;
 };
 
-/// Cells of an OctoMap as boxes: the occupied ones, and, where they are asked for, the unknown ones within the box of
-/// all that is known.
+/// Cells of an OctoMap as boxes: the occupied ones and, if they are asked for, the unknown ones within the box of all
+/// known cells.
 template <class Tree>
 class CellCollector {
  public:
@@ -240,7 +240,8 @@ class CellCollector {
     }
   }
 
-  /// What of an unknown cell lies within the map's box: a box each, however finely the map's edge would divide it.
+  /// Adds the part of an unknown cell that lies within the map's box. It is one box, however finely the map's edge
+  /// would divide it.
   void addUnknown(const Eigen::Vector3d& center, double half) {
     if (!unknown_) return;
     const Eigen::Vector3d lower = (center.array() - half).max(lower_), upper = (center.array() + half).min(upper_);
@@ -297,7 +298,7 @@ OctoMapHeader readOctoMapHeader(std::istream& in, const std::string& title, cons
 }
 
 /// Walks over the bytes of an OctoMap's nodes. OctoMap's own readers go as deep as the file says, though a tree has 16
-/// levels, and stop where they think that they are done.
+/// levels, and do not check that the file ends there.
 class OctoMapNodes {
  public:
   /// @param node_bytes  of a full tree: those of a node but for its children's; 0: a binary tree.

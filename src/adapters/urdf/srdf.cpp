@@ -18,7 +18,7 @@ namespace {
 
 using detail::fail;
 
-/// The entries of an SRDF about pairs of links, and what of them the robot has no links for.
+/// The entries of an SRDF about pairs of links, and those for which the robot has no links.
 class SrdfReader {
  public:
   SrdfReader(const std::string& path, const KinematicTree& tree) : where_("'" + path + "'"), tree_(tree) {
@@ -56,7 +56,7 @@ class SrdfReader {
   /// Pairs that need no check, each with its reason.
   const std::map<std::pair<std::string, std::string>, std::string>& reasons() const { return reasons_; }
 
-  /// What was passed over, and what of the file is not so here.
+  /// Notes on elements that were passed over, and on statements of the file that do not hold for this robot.
   std::vector<std::string> notes() const {
     std::vector<std::string> notes = notes_;
     if (passed_over_ > 0) notes.push_back(passedOver());
@@ -71,9 +71,9 @@ class SrdfReader {
   static std::pair<std::string, std::string> key(const std::string& a, const std::string& b) {
     return a < b ? std::make_pair(a, b) : std::make_pair(b, a);
   }
+  static constexpr std::size_t kShown = 3;  ///< names, in messages
   /// "'a', 'b', 'c' and 9 more".
   static std::string firstOf(const std::vector<std::string>& names) {
-    constexpr std::size_t kShown = 3;
     std::string shown;
     for (std::size_t i = 0; i < std::min(kShown, names.size()); ++i) shown += (i ? ", '" : "'") + names[i] + "'";
     return names.size() <= kShown ? shown : shown + " and " + std::to_string(names.size() - kShown) + " more";
@@ -106,19 +106,19 @@ class SrdfReader {
     std::string note = where_ + ": " + std::to_string(passed_over_) + " of " + std::to_string(entries_) +
                        " entries name links that robot '" + tree_.name() + "' does not have, " + firstOf(unknown_) +
                        "; they are passed over";
-    // A link that the file names elsewhere is not what a slip stands for.
+    // A link that the file names elsewhere is no candidate for a name with a slip.
     std::vector<std::string> unnamed;
     for (LinkId link = 0; link < tree_.numLinks(); ++link) {
       if (!known_.count(tree_.linkName(link))) unnamed.push_back(tree_.linkName(link));
     }
-    for (const std::string& name : unknown_) {
-      const std::string nearest = text::nearestName(name, unnamed);
-      if (!nearest.empty()) return note + "; did you mean '" + nearest + "' by '" + name + "'?";
+    for (std::size_t i = 0; i < std::min(kShown, unknown_.size()); ++i) {
+      const std::string nearest = text::nearestName(unknown_[i], unnamed);
+      if (!nearest.empty()) return note + "; did you mean '" + nearest + "' by '" + unknown_[i] + "'?";
     }
     return note;
   }
 
-  /// A robot whose base moves by its SRDF, and stands still by its tree.
+  /// Notes a robot whose base moves by its SRDF, and stands still by its tree.
   void noteBase(const tinyxml2::XMLElement& e) {
     const char *type = e.Attribute("type"), *child = e.Attribute("child_link");
     if (!type || std::string(type) == "fixed") return;

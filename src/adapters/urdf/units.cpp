@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Lengths in other units than metres: geometries multiplied, and what gives them away.
+// Lengths in other units than metres: multiplies geometries, and finds signs of such units.
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/cone.h>
@@ -55,8 +55,8 @@ namespace {
 
 constexpr double kUnbounded = 1e30;  // FCL's boxes around planes end near the largest double
 
-/// No point of the robot's geometry is ever farther from its root: each joint's frame stands at a fixed distance from
-/// the link that carries it, whichever way the joints turn.
+/// Bound on the distance of the robot's geometry from its root, whichever way the joints turn: each joint's frame
+/// stands at a fixed distance from the link that carries it.
 double reachOf(const Robot& robot) {
   const KinematicTree& tree = *robot.tree;
   std::vector<double> frames(static_cast<std::size_t>(tree.numLinks()), 0);  // of each link, from its root
@@ -98,8 +98,8 @@ std::vector<std::string> unitNotes(const Robot& robot, const Scene& scene) {
       size = extent;
     }
   }
-  // What stands about a robot is a tenth to ten times as large as its reach, and so, a millimetre taken for a metre, a
-  // hundred to ten thousand times.
+  // Bodies that stand about a robot are a tenth to ten times as large as its reach. If their millimetres are taken for
+  // metres, they are a hundred to ten thousand times as large.
   constexpr double kFar = 10, kHuge = 100;
   if (nearest && distance > reach) {
     notes.push_back("no obstacle can be reached: '" + nearest->name + "', the nearest, is " + detail::text(distance) +

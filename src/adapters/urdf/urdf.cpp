@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 using detail::fail;
 
-/// Catches what urdfdom has to say while it lives: urdfdom prints its reasons, and returns only null.
+/// Catches urdfdom's messages while it lives: urdfdom prints its reasons, and returns only null.
 class ParserMessages : public console_bridge::OutputHandler {
  public:
   ParserMessages() : lock_(mutex()) { console_bridge::useOutputHandler(this); }
@@ -55,8 +55,9 @@ class ParserMessages : public console_bridge::OutputHandler {
   std::vector<std::string> warnings_, errors_;
 };
 
-/// What urdfdom does not report: the order of the file (it sorts by name), and what the file holds in collision
-/// geometry (it goes on without an element that it cannot read, and a robot without that geometry would pass as free).
+/// Facts about the file that urdfdom does not report. One is the order of its elements: urdfdom sorts them by name. The
+/// other is the collision geometry: urdfdom goes on without an element that it cannot read, and a robot without that
+/// geometry would pass as free.
 struct Document {
   struct Link {
     std::string name;
@@ -74,15 +75,21 @@ std::size_t numChildren(const tinyxml2::XMLElement* parent, const char* name = n
   return count;
 }
 
+void removeChildren(tinyxml2::XMLElement& parent, const char* name) {
+  for (auto* e = parent.FirstChildElement(name); e;) {
+    tinyxml2::XMLElement* const next = e->NextSiblingElement(name);
+    parent.DeleteChild(e);
+    e = next;
+  }
+}
+
 Document::Link readLink(const std::string& name, tinyxml2::XMLElement& element) {
   Document::Link link{name, numChildren(&element, "collision"), numChildren(&element, "visual") > 0};
-  for (const char* unused : {"visual", "inertial"}) {
-    while (auto* e = element.FirstChildElement(unused)) element.DeleteChild(e);
-  }
+  for (const char* unused : {"visual", "inertial"}) removeChildren(element, unused);
   return link;
 }
 
-/// A limit of which one end is missing: urdfdom takes it for 0, as URDF's rules say, which seldom is what was meant.
+/// Notes a limit with one end missing: urdfdom takes that end for 0, by URDF's rules, which is seldom meant.
 void noteLimit(const tinyxml2::XMLElement& joint, std::vector<std::string>& notes) {
   const char* const type = joint.Attribute("type");
   const tinyxml2::XMLElement* const limit = joint.FirstChildElement("limit");
@@ -107,8 +114,7 @@ Document readDocument(const std::string& where, const std::string& file) {
       noteLimit(*e, document.notes);
     }
   }
-  // (Of visual elements only, and so of no concern here.)
-  while (auto* material = robot.FirstChildElement("material")) robot.DeleteChild(material);
+  removeChildren(robot, "material");  // a material belongs to visual elements only
   tinyxml2::XMLPrinter printer;
   xml.Print(&printer);
   document.xml = printer.CStr();
@@ -173,7 +179,7 @@ Joint toJoint(const std::string& where, const urdf::Joint& in) {
   return out;
 }
 
-/// The direction of an axis, which is brought near 1 before it is squared: it may be of any length. 0 stays 0.
+/// The direction of an axis of any length. The axis is scaled near 1 before it is squared; 0 stays 0.
 Eigen::Vector3d directionOf(const Eigen::Vector3d& axis) {
   const double largest = axis.cwiseAbs().maxCoeff();
   return largest > 0 ? Eigen::Vector3d((axis / largest).normalized()) : axis;
@@ -259,7 +265,7 @@ std::shared_ptr<const KinematicTree> makeTree(const std::string& where, const ur
   try {
     for (const Document::Link& link : document.links) tree->addLink(link.name);
     placeBase(*tree, model.getRoot()->name, options);
-    std::vector<Joint> mimics;  // may stand before their masters in the file, and take no variable
+    std::vector<Joint> joints, mimics;  // the latter may stand before their masters in the file, and take no variable
     for (const std::string& name : document.joints) {
       const Joint joint = toJoint(where, *model.getJoint(name));
       if (joint.type == JointType::planar && !directionOf(joint.axis).isApprox(Eigen::Vector3d::UnitZ())) {
@@ -271,14 +277,12 @@ std::shared_ptr<const KinematicTree> makeTree(const std::string& where, const ur
       } else if (limitable && !joint.mimics && joint.lower > joint.upper) {
         notes.push_back("joint '" + name + "' has its lower limit above its upper one, and is taken to have none");
       }
-      if (joint.mimics) {
-        mimics.push_back(joint);
-      } else {
-        tree->addJoint(joint);
-      }
+      (joint.mimics ? mimics : joints).push_back(joint);
     }
+    tree->addJoints(joints);
     std::map<std::string, double> still;  // mimics that stand still, and where
-    for (Joint& joint : mastersFirst(mimics)) {
+    mimics = mastersFirst(mimics);
+    for (Joint& joint : mimics) {
       const auto found = still.find(joint.mimic.master);
       const urdf::JointConstSharedPtr master = model.getJoint(joint.mimic.master);
       const bool can_follow = KinematicTree::numVariables(joint.type) == 1 && !joint.axis.isZero(0);
@@ -289,8 +293,8 @@ std::shared_ptr<const KinematicTree> makeTree(const std::string& where, const ur
                         "' and is fixed too");
         freeze(joint, value);
       }
-      tree->addJoint(joint);
     }
+    tree->addJoints(mimics);
   } catch (const std::invalid_argument& error) {
     fail(where, error.what());
   }
@@ -308,14 +312,15 @@ std::vector<fs::path> foldersOf(const char* variable) {
   return folders;
 }
 
-/// Where a URDF's relative paths begin: its own folder; the present one for what a shell passes on, as `<(xacro ...)`.
+/// The folder from which a URDF's relative paths begin: its own, or the present one if a shell passes the file on, as
+/// `<(xacro ...)`.
 fs::path folderOf(const std::string& urdf_path) {
   const auto begins = [&](const char* with) { return urdf_path.rfind(with, 0) == 0; };
   const bool passed_on = urdf_path == "/dev/stdin" || begins("/dev/fd/") || begins("/proc/");
   return passed_on ? fs::current_path() : fs::absolute(urdf_path).parent_path();
 }
 
-/// The same folder by a path that can be gone up: what ".." is above a link, only the disk knows.
+/// The same folder, by a path whose parents can be read off it: only the disk knows the folder above a symbolic link.
 fs::path withoutDots(const fs::path& folder) {
   if (std::find(folder.begin(), folder.end(), "..") == folder.end()) return folder.lexically_normal();
   std::error_code error;
@@ -323,7 +328,7 @@ fs::path withoutDots(const fs::path& folder) {
   return error ? folder : there;
 }
 
-/// The name that a folder's package.xml gives; empty where it has none that can be read.
+/// The name that a folder's package.xml gives; empty if it has none that can be read.
 std::string packageName(const fs::path& folder) {
   std::error_code error;
   const fs::path file = folder / "package.xml";
@@ -344,7 +349,7 @@ class MeshFinder {
   MeshFinder(const std::string& urdf_path, const UrdfOptions& options)
       : folder_(folderOf(urdf_path)), packages_(options.packages) {}
 
-  /// What is unusual about the paths that were found, one line each.
+  /// Notes on unusual paths that were found, one line each.
   const std::vector<std::string>& notes() const { return notes_; }
 
   std::string find(const std::string& where, const std::string& uri) {
@@ -406,7 +411,7 @@ class MeshFinder {
                     listed("AMENT_PREFIX_PATH") + ". Say where it is: --package " + name +
                     "=DIR (C++: UrdfOptions::packages, Python: packages={'" + name + "': 'DIR'})");
   }
-  /// A package that stands in several folders: which one is meant is not known where they differ.
+  /// Notes a package that stands in several folders, if the folders' files differ: it is not known which one is meant.
   void noteOther(const std::string& uri, const std::vector<std::string>& there) {
     if (!noted_.insert(uri).second) return;
     const std::string first = contentOf(there.front());
@@ -449,7 +454,7 @@ class MeshFinder {
       if (dir == dir.parent_path()) break;
     }
     for (const fs::path& folder : foldersOf("ROS_PACKAGE_PATH")) {
-      int left = kMostFolders;
+      int left = kMaxFolders;
       searchBelow(folder, name, kDeepest, left, add);
     }
     for (const fs::path& prefix : foldersOf("AMENT_PREFIX_PATH")) add(prefix / "share" / name);
@@ -458,7 +463,7 @@ class MeshFinder {
 
   /// Looks for a package in a folder and those below it, as rospack does: not within packages, nor where a file says
   /// that there are none.
-  /// @param[in,out] left  folders that may yet be looked at: a path may lead to all of a disk.
+  /// @param[in,out] left number of folders that may yet be looked at: a path may lead to all of a disk.
   template <typename Add>
   static void searchBelow(const fs::path& folder, const std::string& name, int depth, int& left, const Add& add) {
     if (--left < 0) return;
@@ -479,7 +484,7 @@ class MeshFinder {
     for (const fs::path& next : below) searchBelow(next, name, depth - 1, left, add);
   }
 
-  static constexpr int kDeepest = 12, kMostFolders = 100000;  // a link may lead in a circle
+  static constexpr int kDeepest = 12, kMaxFolders = 100000;  // a link may lead in a circle
   fs::path folder_;
   std::vector<std::string> notes_;
   std::set<std::string> noted_;  ///< URLs
@@ -493,8 +498,8 @@ class GeometryFactory {
   GeometryFactory(MeshFinder finder, const UrdfOptions& options, std::vector<std::string>& notes)
       : finder_(std::move(finder)), options_(options), notes_(notes) {}
 
-  /// Reads all meshes, over threads: most of the time of loading a robot is FCL's for its trees. What is wrong with one
-  /// is said when it is asked for.
+  /// Reads all meshes, over threads: most of the time of loading a robot is FCL's for its trees. If a mesh has a fault,
+  /// the exception comes when the mesh is asked for.
   void readMeshes(const urdf::ModelInterface& model) {
     for (const auto& [name, link] : model.links_) {
       for (const urdf::CollisionSharedPtr& collision : link->collision_array) {
@@ -572,7 +577,7 @@ class GeometryFactory {
   std::map<Key, Mesh> meshes_;
 };
 
-/// A sphere of radius 0, by which makers of robots give simulators a point of contact.
+/// Whether it is a sphere of radius 0, by which makers of robots give simulators a point of contact.
 bool isPoint(const urdf::Geometry& geometry) {
   return geometry.type == urdf::Geometry::SPHERE && static_cast<const urdf::Sphere&>(geometry).radius == 0;
 }
@@ -581,7 +586,7 @@ bool isPoint(const urdf::Geometry& geometry) {
 
 void Robot::addTo(ArticulatedCollisionManager& manager) const {
   if (!tree) throw std::invalid_argument("Robot::addTo: the robot has no tree");
-  // Geometries go by numbers of links: of another robot these are other links.
+  // Geometries go by numbers of links, which mean other links in another robot.
   const KinematicTree& other = manager.tree();
   for (LinkId link = 0; link < tree->numLinks(); ++link) {
     if (link < other.numLinks() && tree->linkName(link) == other.linkName(link)) continue;

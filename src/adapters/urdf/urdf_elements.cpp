@@ -23,11 +23,12 @@ struct Count {
   int least, most;
 };
 
-/// What an element may hold.
+/// The children and attributes that an element may have.
 struct Grammar {
   std::map<std::string, Count> children;  ///< that are understood
   std::set<std::string> attributes;       ///< that are understood
-  /// What is passed over: what it says is of looks, of masses, forces, sensors and controllers, of names.
+  /// Children and attributes that are passed over: they are about looks, masses, forces, sensors, controllers and
+  /// names.
   std::set<std::string> passed_over, passed_over_attributes;
 };
 
@@ -82,8 +83,8 @@ const Elements& urdfElements() {
   return elements;
 }
 
-/// What is passed over is of planning groups, of the joint to the world, of spheres that stand for links in planners,
-/// of grasps and drives. So is text, of which Baxter's file has some.
+/// The elements that are passed over are about planning groups, the joint to the world, spheres that stand for links in
+/// planners, grasps and drives. Text is passed over, too: Baxter's file has some.
 const Elements& srdfElements() {
   static const Elements elements = {
       {"robot",
@@ -161,9 +162,9 @@ class Strict {
         refuse(e, "the attribute '" + name + "' has bytes that are no UTF-8; save the file as UTF-8");
       }
       if (name == "xmlns" || name.rfind("xmlns:", 0) == 0) continue;
-      // Another vocabulary's word for it, such as drake:acceleration, is passed over as ours is.
+      // A word of another vocabulary, such as drake:acceleration, is passed over like the word itself.
       if (of.passed_over_attributes.count(name.substr(name.find(':') + 1))) continue;
-      // Of an axis that some writers give angles, all of them 0, they say nothing.
+      // Some writers give an axis angles, all of them 0: these mean nothing.
       if (std::strcmp(e.Name(), "axis") == 0 && name == "rpy" && isZero(a->Value())) continue;
       const std::string cure = name == "quat_xyzw" || name == "quat_wxyz"
                                    ? "; write the rotation as rpy=\"ROLL PITCH YAW\" (rad)"

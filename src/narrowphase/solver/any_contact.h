@@ -188,7 +188,7 @@ inline bool AnyContact::tryLinks(const Entry& e) {
     if (balls_.inLinks(e.pair, __builtin_ctz(near))) return true;
   }
   if (!guess->isDeep() || !(e.mask >> guess->lane & 1)) return false;
-  return proofs_.anyTriangles(motions_.of(e.pair, whole()), guess->lane, kMostAtPose);
+  return proofs_.anyTriangles(motions_.of(e.pair, whole()), guess->lane, kMaxBoxPairs);
 }
 
 /// Whether a pair whose hulls overlap rests at t = 0, or nearly so: then it may do so at all poses, with many pieces of

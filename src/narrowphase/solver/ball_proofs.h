@@ -112,27 +112,27 @@ inline bool BallProofs::inLinks(PairId pair, int lane) {
   const PairParts bodies = problem().parts(pair);
   const Body &A = body(bodies.a), &B = body(bodies.b);
   if (!A.balls || !B.balls) return false;
-  const InnerBalls &of_a = *A.balls, &of_b = *B.balls;
+  const InnerBalls &balls_a = *A.balls, &balls_b = *B.balls;
   const PlacedLink a = placedLink(A.mover, lane), b = placedLink(B.mover, lane);
   const double error = 4 * differenceError(a, b);
-  Vec3Lanes centers[InnerBalls::kMost / kLanes];
-  for (int i = 0; i < of_a.count; i += kLanes) {
-    centers[i / kLanes] = a.place(pointsAt(of_a.center[0] + i, of_a.center[1] + i, of_a.center[2] + i));
+  Vec3Lanes centers[InnerBalls::kMax / kLanes];
+  for (int i = 0; i < balls_a.count; i += kLanes) {
+    centers[i / kLanes] = a.place(pointsAt(balls_a.center[0] + i, balls_a.center[1] + i, balls_a.center[2] + i));
   }
   int nested_a = -1, nested_b = -1;  // parts of which the one may lie within the other
-  for (int j = 0; j < of_b.count; ++j) {
-    const Vec3 center = b.place(Vec3(of_b.center[0][j], of_b.center[1][j], of_b.center[2][j]));
-    for (int first = 0; first < of_a.count; first += kLanes) {
+  for (int j = 0; j < balls_b.count; ++j) {
+    const Vec3 center = b.place(Vec3(balls_b.center[0][j], balls_b.center[1][j], balls_b.center[2][j]));
+    for (int first = 0; first < balls_a.count; first += kLanes) {
       const Vec3Lanes d = centers[first / kLanes] - spread(center);
-      const Lanes radii = lanesAt(of_a.radius + first) + Lanes(of_b.radius[j] - error);
+      const Lanes radii = lanesAt(balls_a.radius + first) + Lanes(balls_b.radius[j] - error);
       for (unsigned meet = greater(radii, Lanes(0.0)) & greater(radii * radii, dot(d, d)); meet; meet &= meet - 1) {
         const int i = first + __builtin_ctz(meet);
-        if (of_a.part[i] == nested_a && of_b.part[j] == nested_b) continue;
-        const ClosedPart &part_a = of_a.parts[of_a.part[i]], &part_b = of_b.parts[of_b.part[j]];
+        if (balls_a.part[i] == nested_a && balls_b.part[j] == nested_b) continue;
+        const ClosedPart &part_a = balls_a.parts[balls_a.part[i]], &part_b = balls_b.parts[balls_b.part[j]];
         ++statistics().contact_proofs;
         if (!certainlyReachesOut(part_a, a, part_b, b, error) || !certainlyReachesOut(part_b, b, part_a, a, error)) {
-          nested_a = of_a.part[i];
-          nested_b = of_b.part[j];
+          nested_a = balls_a.part[i];
+          nested_b = balls_b.part[j];
           continue;
         }
         LeafContact* const recorded = contacts_.record(pair, -1, -1, frames_.batch().at[lane]);
@@ -142,9 +142,9 @@ inline bool BallProofs::inLinks(PairId pair, int lane) {
         // From A's centre towards B's, in the middle of what both balls have in common.
         const Vec3 towards = transposedTimes(a.R, -laneOf(d, i - first)), normal = unitOrZ(towards);
         const double distance = norm(towards);
-        const double along = 0.5 * (max(distance - of_b.radius[j], 0.0) + min(of_a.radius[i], distance));
+        const double along = 0.5 * (max(distance - balls_b.radius[j], 0.0) + min(balls_a.radius[i], distance));
         normal.store(contact.normal);
-        (Vec3(of_a.center[0][i], of_a.center[1][i], of_a.center[2][i]) + normal * along).store(contact.point);
+        (Vec3(balls_a.center[0][i], balls_a.center[1][i], balls_a.center[2][i]) + normal * along).store(contact.point);
         return true;
       }
     }

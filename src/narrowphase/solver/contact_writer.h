@@ -39,7 +39,7 @@ inline void ContactWriter::lookBack(Candidate& f) {
   for (int k = 0; k < kLanes && !f.have_normal; ++k) {
     const DifferenceBody body = seen->differenceAt(a, b, k);
     GjkResult g;
-    gjk(body, body.pose.c, 1e-7, a.radius + b.radius + seen->margin(), 64, g);
+    gjk(body, body.pose.c, {1e-7, a.radius + b.radius + seen->margin(), 64}, g);
     ++statistics().gjk;
     if (g.overlap) continue;
     f.normal = g.n;
@@ -61,7 +61,7 @@ inline void ContactWriter::turnToSide(Candidate& f, const DifferenceBody& body) 
 inline Vec3 ContactWriter::pointBetween(Candidate& f, const DifferenceBody& body) {
   const Piece &a = *body.a, &b = *body.b;
   GjkResult g;
-  gjk<true>(body, f.have_normal ? f.normal : body.pose.c, 1e-7, 0, 64, g);
+  gjk<true>(body, f.have_normal ? f.normal : body.pose.c, {1e-7, 0, 64}, g);
   originWeights(g.simplex);
   if (!f.have_normal && !g.overlap) {
     f.normal = g.n;

@@ -46,10 +46,10 @@ struct Candidate {
 /// Returns the piece of a body at GJK's witness. The witness is a weighted mean of vertices of the hull. The piece is
 /// the one whose vertices among these have the largest sum of weights; its box holds the heaviest of them. None: -1,
 /// for instance if the hull's vertices are not the body's own.
-inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool of_a) {
+inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool in_a) {
   if (tree.num_pieces == 1) return 0;
   if (tree.pieces[0].kind != PieceKind::vertices || simplex.n == 0) return -1;
-  const auto point = [&](int k) { return of_a ? simplex.v[k].a : simplex.v[k].b; };
+  const auto point = [&](int k) { return in_a ? simplex.v[k].a : simplex.v[k].b; };
   int heaviest = 0;
   for (int k = 1; k < simplex.n; ++k) {
     if (simplex.weight[k] > simplex.weight[heaviest]) heaviest = k;
@@ -131,7 +131,7 @@ class Follower : PartOfSolver {
     Vec3 rate = Vec3(0, 0, 0);
     bool turns = false;
   };
-  bool look(Candidate& f, Seen seen, int lane, double tau, double accuracy);
+  bool findGap(Candidate& f, Seen seen, int lane, double tau, double accuracy);
   GapBounds boundGap(const Candidate& f, Seen seen, const Turning& turning);
   bool proveAhead(Candidate& f, Seen seen, int lane);
   bool prove(Candidate& f);
@@ -143,12 +143,12 @@ class Follower : PartOfSolver {
 
 /// GJK's witness at some time of the present lanes, to f.
 /// @return false: the gap is gone there, or so it seems.
-inline bool Follower::look(Candidate& f, Seen seen, int lane, double tau, double accuracy) {
+inline bool Follower::findGap(Candidate& f, Seen seen, int lane, double tau, double accuracy) {
   const PiecePair pieces = piecesOf(f, seen);
   const double radii = pieces.a.radius + pieces.b.radius + seen->margin();
   const DifferenceBody body = seen->differenceAt(pieces.a, pieces.b, lane, tau);
   GjkResult g;
-  gjk(body, f.have_normal ? f.normal : body.pose.c, accuracy, radii, 64, g, &f.simplex);
+  gjk(body, f.have_normal ? f.normal : body.pose.c, {accuracy, radii, 64}, g, &f.simplex);
   ++statistics().gjk;
   f.simplex = g.simplex;
   if (g.overlap) {
@@ -215,7 +215,7 @@ inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsi
     f.speed = seen->amplitude() / d;
     f.pad = seen->pad();
     ++statistics().leaf_tests;
-    if (!f.have_normal && !look(f, seen, first ? __builtin_ctz(first_lanes) : 0, -1, accuracy)) break;
+    if (!f.have_normal && !findGap(f, seen, first ? __builtin_ctz(first_lanes) : 0, -1, accuracy)) break;
 
     const GapBounds bounds = boundGap(f, seen, turning);
     const unsigned separated = (first ? kAllLanes & ~first_lanes : 0) | bounds.positive();
@@ -232,7 +232,7 @@ inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsi
     f.t_lower = max(t, min(stop, max(root, lane ? tm[lane] - 0.5 * w : t)));
     const double progress = f.t_lower - turning.at, gap = f.gap;
     const Vec3 before = f.normal;
-    if (!look(f, seen, lane, (f.t_lower - tm[lane]) / d, accuracy)) break;
+    if (!findGap(f, seen, lane, (f.t_lower - tm[lane]) / d, accuracy)) break;
     turning.turns = progress > 0 && dot(before, f.normal) > 0.5 && piecesOf(f, seen).areBounded();
     turning.rate = turning.turns ? (f.normal - before) / progress : Vec3(0, 0, 0);
     turning.at = f.t_lower;

@@ -54,10 +54,10 @@ constexpr double kLongMotion = 0.2;
 
 /// Maximum number of leaf pairs of one lane that are recorded although nothing can be proven of them.
 constexpr int kEnoughUncertain = 16;
-/// Maximum number of pairs of boxes, as kMostAtPose, that are tested right after the start if no contact is proven at
+/// Maximum number of pairs of boxes, as kMaxBoxPairs, that are tested right after the start if no contact is proven at
 /// the start. They take a hundredth of a second. Without a proof the search would divide all that touches down to the
 /// finest lanes.
-constexpr int kMostAfterStart = 1 << 20;
+constexpr int kMaxAfterStart = 1 << 20;
 
 /// An interval of time. All that is searched in it is proven free before its start.
 struct Window {
@@ -108,7 +108,7 @@ class PairSearch : PartOfSolver {
   void run(const Buffer<Entry>& open);
 
  private:
-  enum class Step { free, done, split };
+  enum class LaneResult { free, done, split };
   /// The state of leaf pairs at one time: none is known to touch, or one may, or one is recorded as a contact.
   enum class Touching { no, maybe, recorded };
 
@@ -155,9 +155,9 @@ class PairSearch : PartOfSolver {
   void solveLane(const Selection& of, const Window& window, unsigned first_lanes = 0);
   void followHulls(const Selection& of, const Window& window, unsigned first_lanes);
   void solvePieces(const Candidate& f, double stop, int lane);
-  Step solveInterval(const Selection& of, const Window& window);
-  Step solveOpenLane(const Selection& of, const Window& window);
-  Step followLeaves(const Selection& of, const Window& window);
+  LaneResult solveInterval(const Selection& of, const Window& window);
+  LaneResult solveOpenLane(const Selection& of, const Window& window);
+  LaneResult followLeaves(const Selection& of, const Window& window);
   void followEach(const Window& window);
 
   RelativeMotions& motions_;
@@ -222,10 +222,12 @@ inline bool PairSearch::recordWhereTheyRest(PairId pair, double t) {
     x = x + g.simplex.v[i].a * g.simplex.weight[i];
     y = y + g.simplex.v[i].b * g.simplex.weight[i];
   }
-  std::int32_t near_a[kMostAround], near_b[kMostAround];
+  std::int32_t near_a[kMaxPiecesAround], near_b[kMaxPiecesAround];
   const double reach = max(query().tolerance_distance, seen->pad());
-  const int num_a = piecesAround(A, g.simplex, true, x, A.outer->radius + seen->margin() + reach, near_a);
-  const int num_b = piecesAround(B, g.simplex, false, y, B.outer->radius + seen->margin() + reach, near_b);
+  const int num_a =
+      piecesAround(A, pieceAtWitness(A, g.simplex, true), x, A.outer->radius + seen->margin() + reach, near_a);
+  const int num_b =
+      piecesAround(B, pieceAtWitness(B, g.simplex, false), y, B.outer->radius + seen->margin() + reach, near_b);
   touching_.clear();
   for (int i = 0; i < num_a * num_b; ++i) {
     Candidate f = candidateOf({pair, 0, 0, kAllLanes}, t);
@@ -246,7 +248,7 @@ inline bool PairSearch::recordWhereTheyRest(PairId pair, double t) {
 inline bool PairSearch::recordAtStart(const Selection& of) {
   const PairId pair = of.list[of.begin].pair;
   if (contacts_.watchFrom(pair) > 0) return false;
-  if (proofs_.anyTriangles(motions_.of(pair, TimeBatch::around(0)), 0, kMostAtPose)) return true;
+  if (proofs_.anyTriangles(motions_.of(pair, TimeBatch::around(0)), 0, kMaxBoxPairs)) return true;
   const Shortened shortened(stack_);
   const int out_begin = stack_.size();
   const TimeBatch batch = TimeBatch::partsOf(0, finestEnd(0));
@@ -263,7 +265,7 @@ inline bool PairSearch::recordAtStart(const Selection& of) {
   const Touching touching = recordTouching(0, false);
   if (touching != Touching::maybe) return touching == Touching::recorded;
   const TimeBatch after = TimeBatch::around(min(1.0, 0.5 * query().tolerance_time));
-  return proofs_.anyTriangles(motions_.of(pair, after), 0, kMostAfterStart);
+  return proofs_.anyTriangles(motions_.of(pair, after), 0, kMaxAfterStart);
 }
 
 /// Whether a leaf pair of `touching_` touches at t; then it is recorded.
@@ -273,7 +275,7 @@ inline PairSearch::Touching PairSearch::recordTouching(double t, bool may_rest) 
   const double stop = finestEnd(t);
   Candidate resting = {};
   int uncertain = 0;
-  for (int i = 0; i < touching_.size() && (!may_rest || uncertain < kMostAround); ++i) {
+  for (int i = 0; i < touching_.size() && (!may_rest || uncertain < kMaxPiecesAround); ++i) {
     Candidate& f = touching_[i];
     f.target = Candidate::Target::leafPair;
     const auto isOpen = [&] { return f.t_lower <= t && isNear(f); };
@@ -307,11 +309,11 @@ inline void PairSearch::testHulls(Buffer<Entry>& open, const StageOne& stage_one
       e.mask = traversal_.nodesMayTouch(seen, 0, 0, e.mask);
       if (e.mask) {
         const bool suspect = !query().every_pair && movesFar(seen);
-        const Traversal::HullLook look =
+        const Traversal::HullTest test =
             traversal_.hullsMayTouch(seen, e.mask, suspect, {true, stage_one.direction(e)});
-        e.mask = look.mask;
-        e.within = look.within;
-        if (look.overlaps) any_.guessOverlap(e.pair, look.overlaps);
+        e.mask = test.mask;
+        e.within = test.within;
+        if (test.overlaps) any_.guessOverlap(e.pair, test.overlaps);
         if (e.mask && !horizon_.isOver()) any_.tryLinks(e);
       }
       horizon_.mustEnd();
@@ -486,17 +488,17 @@ inline void PairSearch::solvePieces(const Candidate& f, double stop, int lane) {
   double span = f.speed * (stop - f.t_lower) > size ? max(size / f.speed, kNarrowestLane) : stop - f.t_lower;
   for (double t = f.t_lower; t < min(stop, horizon_.end()); span *= 8) {
     const double next = t + 1.5 * span < min(stop, horizon_.end()) ? t + span : min(stop, horizon_.end());
-    if (solveInterval(of, {t, next - t}) == Step::done) return;
+    if (solveInterval(of, {t, next - t}) == LaneResult::done) return;
     t = next;
   }
 }
 
 /// One batch over a window, for entries of one pair.
-inline PairSearch::Step PairSearch::solveInterval(const Selection& of, const Window& window) {
+inline PairSearch::LaneResult PairSearch::solveInterval(const Selection& of, const Window& window) {
   FCL_ARTIC_ASSERT(of.begin < of.end);
   const TimeBatch batch = TimeBatch::partsOf(window.start, window.width);
   watch(batch);
-  if (task_.ended()) return Step::done;
+  if (task_.ended()) return LaneResult::done;
   const Shortened shortened(stack_);
   const int begin = stack_.size();
   const bool finest = horizon_.isFinest();
@@ -504,20 +506,20 @@ inline PairSearch::Step PairSearch::solveInterval(const Selection& of, const Win
     if (!of.has(i)) continue;
     const Entry e = of.list[i];
     traversal_.descend(motions_.of(e.pair, batch), {e.pair, e.a, e.b, kAllLanes}, aim(), stack_);
-    if (horizon_.isOver()) return Step::done;
+    if (horizon_.isOver()) return LaneResult::done;
   }
   const int end = stack_.size();
   for (int lane = 0; lane < kLanes; ++lane) {
     if (batch.start[lane] >= horizon_.end()) break;
     const Window of_lane = {batch.start[lane], batch.width, finest};
-    if (solveOpenLane({stack_, begin, end, lane}, of_lane) == Step::done) return Step::done;
+    if (solveOpenLane({stack_, begin, end, lane}, of_lane) == LaneResult::done) return LaneResult::done;
   }
-  return Step::free;
+  return LaneResult::free;
 }
 
 /// Decides a lane that some entries of one pair leave undecided: few leaf pairs are followed one by one; else the lane
 /// is split.
-inline PairSearch::Step PairSearch::solveOpenLane(const Selection& of, const Window& window) {
+inline PairSearch::LaneResult PairSearch::solveOpenLane(const Selection& of, const Window& window) {
   int count = 0;
   bool leaves = true;
   for (int i = of.begin; i < of.end && (window.finest || count <= kFewLeaves); ++i) {
@@ -525,25 +527,25 @@ inline PairSearch::Step PairSearch::solveOpenLane(const Selection& of, const Win
     ++count;
     leaves = leaves && isLeafPair(of.list[i]);
   }
-  if (!count) return Step::free;
+  if (!count) return LaneResult::free;
   if (leaves && (window.finest || count <= kFewLeaves)) {
-    const Step step = followLeaves(of, window);
-    if (step != Step::split) return step;
+    const LaneResult step = followLeaves(of, window);
+    if (step != LaneResult::split) return step;
   }
-  if (window.start == 0 && splits_at_start_-- == 0 && recordAtStart(of)) return Step::done;
+  if (window.start == 0 && splits_at_start_-- == 0 && recordAtStart(of)) return LaneResult::done;
   return solveInterval(of, window);
 }
 
 /// The leaf pairs that a lane leaves undecided, one by one: how far is each free, and is there contact?
-/// @return Step::split: the lane is to be split, as it is wider than the tolerance, or the pairs are farther apart than
-/// the distance tolerance, and nothing is proven.
-inline PairSearch::Step PairSearch::followLeaves(const Selection& of, const Window& window) {
+/// @return LaneResult::split: the lane is to be split, as it is wider than the tolerance, or the pairs are farther
+/// apart than the distance tolerance, and nothing is proven.
+inline PairSearch::LaneResult PairSearch::followLeaves(const Selection& of, const Window& window) {
   leaves_.clear();
   for (int i = of.begin; i < of.end; ++i) {
     if (of.has(i)) leaves_.push(candidateOf(of.list[i], window.start));
   }
   followEach(window);
-  if (task_.ended()) return Step::done;
+  if (task_.ended()) return LaneResult::done;
   const bool narrow = window.width <= kNarrowestLane;
   // (Where any contact will do and one is proven, it is recorded whatever is still open.)
   for (int i = 0; i < leaves_.size() && !horizon_.isOver(); ++i) {
@@ -555,7 +557,7 @@ inline PairSearch::Step PairSearch::followLeaves(const Selection& of, const Wind
       for (int k = 0; k < leaves_.size(); ++k) {
         if (leaves_[k].certain) writer_.record(leaves_[k]);
       }
-      return Step::split;
+      return LaneResult::split;
     }
     horizon_.closeAt(f.t_lower + query().tolerance_time);
   }
@@ -563,7 +565,7 @@ inline PairSearch::Step PairSearch::followLeaves(const Selection& of, const Wind
   for (int i = 0; i < leaves_.size(); ++i) {
     if (leaves_[i].stuck && leaves_[i].t_lower <= horizon_.end()) writer_.record(leaves_[i]);
   }
-  return contacts_.size() > before ? Step::done : Step::free;
+  return contacts_.size() > before ? LaneResult::done : LaneResult::free;
 }
 
 /// Follows the leaf pairs of `leaves_`. If many can be proven neither apart nor in contact, some are enough: leaf pairs

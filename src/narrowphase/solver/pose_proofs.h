@@ -26,22 +26,22 @@ struct BoxesAtPose {
   /// No axis of either box separates them.
   /// @param[out] nearness  square of their middles' distance, as part of their balls' radii.
   bool meet(const Node& a, const Node& b, float& nearness) const {
-    float x[3], of_a[3], of_b[3], y[3];
+    float x[3], half_a[3], half_b[3], y[3];
     for (int k = 0; k < 3; ++k) {
-      of_a[k] = 0.5f * (a.hi[k] - a.lo[k]);
-      of_b[k] = 0.5f * (b.hi[k] - b.lo[k]);
+      half_a[k] = 0.5f * (a.hi[k] - a.lo[k]);
+      half_b[k] = 0.5f * (b.hi[k] - b.lo[k]);
       y[k] = 0.5f * (b.hi[k] + b.lo[k]);
     }
     bool all = true;
     for (int k = 0; k < 3; ++k) {
       const float *r = R + 3 * k, *e = absolute + 3 * k;
       x[k] = c[k] + r[0] * y[0] + r[1] * y[1] + r[2] * y[2] - 0.5f * (a.hi[k] + a.lo[k]);
-      all &= __builtin_fabsf(x[k]) <= of_a[k] + e[0] * of_b[0] + e[1] * of_b[1] + e[2] * of_b[2];
+      all &= __builtin_fabsf(x[k]) <= half_a[k] + e[0] * half_b[0] + e[1] * half_b[1] + e[2] * half_b[2];
     }
     for (int k = 0; k < 3; ++k) {
       const float z = R[k] * x[0] + R[3 + k] * x[1] + R[6 + k] * x[2];
-      all &=
-          __builtin_fabsf(z) <= of_b[k] + absolute[k] * of_a[0] + absolute[3 + k] * of_a[1] + absolute[6 + k] * of_a[2];
+      all &= __builtin_fabsf(z) <=
+             half_b[k] + absolute[k] * half_a[0] + absolute[3 + k] * half_a[1] + absolute[6 + k] * half_a[2];
     }
     const float radii = static_cast<float>(a.radius + b.radius);
     nearness = (x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) / (radii * radii);
@@ -59,7 +59,7 @@ class PoseProofs : PartOfSolver {
   bool vertexInside(Seen seen, int lane);
   bool chordPierces(Seen seen, int lane, const Vec3& near);
   bool triangles(Seen seen, int piece_a, int piece_b, int lane);
-  bool anyTriangles(Seen seen, int lane, int most);
+  bool anyTriangles(Seen seen, int lane, int max_box_pairs);
   bool leaves(Seen seen, int piece_a, int piece_b, int lane);
 
  private:
@@ -74,11 +74,33 @@ class PoseProofs : PartOfSolver {
 
 /// Maximum number of pairs of boxes that are tested in one pose, of which two triangles count as kTwoTriangles.
 /// Measured: with half as many, robots that touch at the start take 7 % longer.
-constexpr int kMostAtPose = 1024, kTwoTriangles = 8;
+constexpr int kMaxBoxPairs = 1024, kTwoTriangles = 8;
 
 /// Corners of a triangle, in its tree's frame.
 inline void cornersOf(const TreeView& mesh, const Piece& triangle, Vec3* corners) {
   for (int i = 0; i < 3; ++i) corners[i] = Vec3(VerticesKind::points(mesh, triangle) + 3 * i);
+}
+
+/// The vertex of a mesh's hull that is deepest in a box; -1: none is in it.
+/// @param pose  of the mesh, seen from the box.
+/// @param center, size  of the box.
+inline int deepestVertex(const TreeView& mesh, const PoseAt& pose, const Vec3& center, const Vec3& size) {
+  const double* x = mesh.hulls + mesh.outer->first_vertex;
+  const int n = mesh.outer->num_vertices;
+  double best = 1;
+  int vertex = -1;
+  for (int i = 0; i < n; i += kLanes) {  // lanes go over vertices
+    Lanes depth(0.0);
+    for (int k = 0; k < 3; ++k) {
+      const Lanes y = hullValues(x, n, i, pose.R[k]) + Lanes(pose.c[k] - center[k]);
+      depth = max(depth, abs(y) * Lanes(2 / size[k]));
+    }
+    const double least = minLane(depth);
+    if (least >= best) continue;
+    best = least;
+    vertex = i + __builtin_ctz(kAllLanes & ~greater(depth, Lanes(least)));
+  }
+  return vertex;
 }
 
 /// For queries that any contact answers: proves that a vertex of the one body's mesh lies within the other body, a
@@ -95,19 +117,7 @@ inline bool PoseProofs::vertexInside(Seen seen, int lane) {
     const Vec3 center = middleOf(box), size = doublesOf(box.hi) - doublesOf(box.lo);
     const double* x = mesh.hulls + mesh.outer->first_vertex;
     const int n = mesh.outer->num_vertices;
-    double best = 1;
-    int vertex = -1;
-    for (int i = 0; i < n; i += kLanes) {  // lanes go over vertices
-      Lanes depth(0.0);
-      for (int k = 0; k < 3; ++k) {
-        const Lanes y = hullValues(x, n, i, body.pose.R[k]) + Lanes(body.pose.c[k] - center[k]);
-        depth = max(depth, abs(y) * Lanes(2 / size[k]));
-      }
-      const double least = minLane(depth);
-      if (least >= best) continue;
-      best = least;
-      vertex = i + __builtin_ctz(kAllLanes & ~greater(depth, Lanes(least)));
-    }
+    const int vertex = deepestVertex(mesh, body.pose, center, size);
     if (vertex < 0) continue;
     Piece point;
     point.kind = PieceKind::point;
@@ -218,8 +228,8 @@ inline bool PoseProofs::triangles(Seen seen, int piece_a, int piece_b, int lane)
 }
 
 /// Tries the triangles of two bodies at a lane's middle: first those in boxes whose middles are near each other.
-/// @param most  pairs of boxes, as kMostAtPose.
-inline bool PoseProofs::anyTriangles(Seen seen, int lane, int most) {
+/// @param max_box_pairs  as kMaxBoxPairs.
+inline bool PoseProofs::anyTriangles(Seen seen, int lane, int max_box_pairs) {
   const TreeView &A = seen->a(), &B = seen->b();
   if (A.pieces[0].kind != PieceKind::vertices || B.pieces[0].kind != PieceKind::vertices) return false;
   const BoxesAtPose boxes(seen->differenceAt(A.pieces[0], B.pieces[0], lane).pose);
@@ -229,19 +239,19 @@ inline bool PoseProofs::anyTriangles(Seen seen, int lane, int most) {
   constexpr int kDeepest = 64;
   NodePair waiting[kDeepest], at = {0, 0};
   int count = 0;
-  for (int left = most; left > 0 && !horizon_.mustEnd();) {
+  for (int left = max_box_pairs; left > 0 && !horizon_.mustEnd();) {
     const Node &x = A.nodes[at.a], &y = B.nodes[at.b];
     if (x.isLeaf() && y.isLeaf()) {
       ++statistics().leaf_tests;
       if (triangles(seen, x.piece(), y.piece(), lane)) return true;
       left -= kTwoTriangles;
     } else {
-      const bool of_a = y.isLeaf() || (!x.isLeaf() && x.radius > y.radius);
+      const bool split_a = y.isLeaf() || (!x.isLeaf() && x.radius > y.radius);
       NodePair child[2] = {at, at};
       bool meet[2];
       float nearness[2];
       for (int i = 0; i < 2; ++i) {
-        (of_a ? child[i].a : child[i].b) = (of_a ? x : y).child + i;
+        (split_a ? child[i].a : child[i].b) = (split_a ? x : y).child + i;
         meet[i] = boxes.meet(A.nodes[child[i].a], B.nodes[child[i].b], nearness[i]);
       }
       left -= 2;

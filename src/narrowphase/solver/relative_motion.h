@@ -167,8 +167,9 @@ inline void RelativeMotion::relate() {
   const StepBounds& bounds = frames_.bounds(parts.sweep, parts.step_b);
   const double d = batch().d;
   RigidLanes& m = side_[0].m;
-  const PairPads pads = relateBodies(frame, bounds, problem().sweeps[parts.sweep].first_order, *parts.inverse_a,
-                                     *parts.placement_b, A.tree->extent + B.tree->extent, margin, d, m, side_[1].m);
+  const PairPads pads =
+      relateBodies({frame, bounds, problem().sweeps[parts.sweep].first_order, d},
+                   {*parts.inverse_a, *parts.placement_b, A.tree->extent + B.tree->extent}, margin, m, side_[1].m);
   side_ready_[0] = side_ready_[1] = false;
   pose_error_ = pads.pose;
   side_[0].still = side_[1].moving = A.tree;

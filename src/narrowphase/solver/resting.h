@@ -13,20 +13,19 @@ namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
 /// Maximum number of a body's pieces that are examined around a point where it may rest.
-constexpr int kMostAround = 4;
+constexpr int kMaxPiecesAround = 4;
 
 /// Pieces at a witness of the body's hull: the one that holds its vertices, and some whose boxes, enlarged by `reach`,
 /// hold the point itself.
+/// @param at_vertices  pieceAtWitness().
 /// @param point  of the hull, in the tree's frame.
-/// @return their number, kMostAround at most.
-inline int piecesAround(const TreeView& tree, const Simplex& simplex, bool of_a, const Vec3& point, double reach,
-                        std::int32_t* pieces) {
+/// @return their number, kMaxPiecesAround at most.
+inline int piecesAround(const TreeView& tree, int at_vertices, const Vec3& point, double reach, std::int32_t* pieces) {
   constexpr int kDeepest = 64;
   std::int32_t waiting[kDeepest] = {0};
   int found = 0;
-  const int at_vertices = pieceAtWitness(tree, simplex, of_a);
   if (at_vertices >= 0) pieces[found++] = at_vertices;
-  for (int count = 1; count && found < kMostAround;) {
+  for (int count = 1; count && found < kMaxPiecesAround;) {
     const Node& node = tree.nodes[waiting[--count]];
     bool holds = true;
     for (int k = 0; k < 3; ++k) holds &= point[k] >= node.lo[k] - reach && point[k] <= node.hi[k] + reach;
@@ -46,7 +45,7 @@ inline int piecesAround(const TreeView& tree, const Simplex& simplex, bool of_a,
 /// simplex that holds the origin. (If the hulls touch, the origin lies on one of these faces.)
 inline double gapWhereTheyRest(const DifferenceBody& hulls, const Simplex& simplex) {
   double gap = -kFarApart;
-  const auto look = [&](const Vec3& n) {
+  const auto tryDirection = [&](const Vec3& n) {
     const double length = norm(n);
     if (!(length > 0)) return;
     for (const double sign : {1 / length, -1 / length}) {
@@ -57,16 +56,16 @@ inline double gapWhereTheyRest(const DifferenceBody& hulls, const Simplex& simpl
   };
   for (int k = 0; k < 3; ++k) {
     const Vec3 axis(k == 0, k == 1, k == 2);
-    look(axis);
-    look(hulls.pose.R * axis);
+    tryDirection(axis);
+    tryDirection(hulls.pose.R * axis);
   }
   const int a = pieceAtWitness(*hulls.tree_a, simplex, true), b = pieceAtWitness(*hulls.tree_b, simplex, false);
-  if (a >= 0 && hasDirection(hulls.tree_a->pieces[a])) look(sizeOf(hulls.tree_a->pieces[a]));
-  if (b >= 0 && hasDirection(hulls.tree_b->pieces[b])) look(hulls.pose.R * sizeOf(hulls.tree_b->pieces[b]));
+  if (a >= 0 && hasDirection(hulls.tree_a->pieces[a])) tryDirection(sizeOf(hulls.tree_a->pieces[a]));
+  if (b >= 0 && hasDirection(hulls.tree_b->pieces[b])) tryDirection(hulls.pose.R * sizeOf(hulls.tree_b->pieces[b]));
   for (int out = 0; out < simplex.n && simplex.n >= 3; ++out) {
     const Vec3 &x = simplex.v[(out + 1) % simplex.n].w, &y = simplex.v[(out + 2) % simplex.n].w;
     const Vec3& z = simplex.v[(out + 3) % simplex.n].w;
-    look(cross(y - x, z - x));
+    tryDirection(cross(y - x, z - x));
     if (simplex.n == 3) break;
   }
   return gap;
@@ -75,7 +74,7 @@ inline double gapWhereTheyRest(const DifferenceBody& hulls, const Simplex& simpl
 /// The gap of two hulls, as GJK sees it; a negative one, where they rest on each other. Far below 0 where they are in
 /// each other by more than `shallow`.
 inline double restingGap(const DifferenceBody& hulls, double radii, double shallow, GjkResult& g) {
-  gjk(hulls, hulls.pose.c, kFollowingAccuracy, radii, 64, g);
+  gjk(hulls, hulls.pose.c, {kFollowingAccuracy, radii, 64}, g);
   if (!g.overlap || unbounded(*hulls.a) || unbounded(*hulls.b)) return g.lower - radii;
   return depthWithin(g.simplex) + radii > shallow ? -kFarApart : gapWhereTheyRest(hulls, g.simplex) - radii;
 }

@@ -51,8 +51,8 @@ class StageOne : PartOfSolver {
   void cullObstacles(int mover, Buffer<Entry>& open);
   void cullLinks(Buffer<Entry>& open);
   unsigned lssMayTouch(int mover, int obstacle_number, unsigned mask, Vec3Lanes& direction);
-  void expectContact(PairId pair, const SweptLss& lss, const engine::StillBounds& obstacle, unsigned mask, Lanes square,
-                     const Vec3Lanes& nearest);
+  void expectContact(PairId pair, int mover, const engine::StillBounds& obstacle, unsigned mask,
+                     const NearestToBox& nearest);
   void sweptInWorld(int mover, engine::SweptLink* parts) const;
   void sweptInPartner(PairId pair, const double* lss, engine::SweptLink* parts);
   void takeAdvice(const engine::Advisor& advisor, Traversal& traversal, Buffer<Entry>& open);
@@ -83,7 +83,7 @@ inline void StageOne::sweepMover(int mover) {
   SweptBox& box = mover_box_[mover];
   if (task_.isLink(mover)) {
     const FrameLanes* frame = carried.step < 0 ? nullptr : &frames_.of(0, carried.step);
-    sweepLss(frame, frames_.bounds(0, carried.step), problem().sweeps[0].first_order, carried, whole().d,
+    sweepLss({frame, frames_.bounds(0, carried.step), problem().sweeps[0].first_order, whole().d}, carried,
              mover_lss_[mover]);
     if (frame) {
       Vec3Lanes lo, hi;
@@ -161,21 +161,20 @@ inline const Buffer<BoxHit>& StageOne::meetObstacles(int mover) {
 inline unsigned StageOne::lssMayTouch(int mover, int obstacle_number, unsigned mask, Vec3Lanes& direction) {
   const PairId pair = problem().scenePair(mover, obstacle_number);
   const engine::StillBounds& obstacle = problem().still_bounds[obstacle_number];
-  const SweptLss& lss = mover_lss_[mover];
-  Lanes square;
-  Vec3Lanes nearest;
-  mask &= ~certainlyApart(lss, obstacle.box, obstacle.inverse, query().margins.of(pair), square, nearest, direction);
-  if (mask && obstacle.solid) expectContact(pair, lss, obstacle, mask, square, nearest);
+  NearestToBox nearest;
+  mask &= ~certainlyApart(mover_lss_[mover], obstacle.box, obstacle.inverse, query().margins.of(pair), nearest);
+  direction = nearest.direction;
+  if (mask && obstacle.solid) expectContact(pair, mover, obstacle, mask, nearest);
   return mask;
 }
 
 /// Contact is expected where a line swept sphere is deep in a solid. Lanes after it are put off. If any contact will
 /// do, it is looked for at once instead, and the pose is kept as a guess if the link's axis is very near.
-inline void StageOne::expectContact(PairId pair, const SweptLss& lss, const engine::StillBounds& obstacle,
-                                    unsigned mask, Lanes square, const Vec3Lanes& nearest) {
-  const auto nearer = [&](double part) {
-    return mask & ~greater(square, Lanes(part * part * lss.radius * lss.radius));
-  };
+inline void StageOne::expectContact(PairId pair, int mover, const engine::StillBounds& obstacle, unsigned mask,
+                                    const NearestToBox& nearest) {
+  const double radius = mover_lss_[mover].radius;
+  const Lanes square = nearest.square;
+  const auto nearer = [&](double part) { return mask & ~greater(square, Lanes(part * part * radius * radius)); };
   const unsigned deep = nearer(kDeep);
   if (!deep || query().every_pair || !contacts_.watching()) return;
   if (!query().any) return horizon_.suspect(whole().at[__builtin_ctz(deep)]);
@@ -183,8 +182,8 @@ inline void StageOne::expectContact(PairId pair, const SweptLss& lss, const engi
   double least = square[__builtin_ctz(deep)];
   for (int k = 0; k < kLanes; ++k) least = deep >> k & 1 ? min(least, square[k]) : least;
   const int lane = middleLane(deep & ~greater(square, Lanes(least)));
-  const bool thin = widthOfRod(obstacle.tree->pieces[0]) < kThinSolid * lss.radius;
-  if (any_.tryObstacle(pair, lane, laneOf(nearest, lane), thin)) return;
+  const bool thin = widthOfRod(obstacle.tree->pieces[0]) < kThinSolid * radius;
+  if (any_.tryObstacle(pair, lane, laneOf(nearest.point, lane), thin)) return;
   if (const unsigned lanes = nearer(kVeryDeep)) any_.guessOverlap(pair, lanes);
 }
 
@@ -223,8 +222,8 @@ inline void StageOne::meetLinks() {
 /// Pairs of movers, also of those that are obstacles. Pairs that advisors have proven free are left out.
 inline void StageOne::cullLinks(Buffer<Entry>& open) {
   const bool any = looksForAny();
-  const std::uint8_t* free[Query::kMostAdvisors];
-  const engine::Advisor* advisors[Query::kMostAdvisors];  // those that are asked of single pairs
+  const std::uint8_t* free[Query::kMaxAdvisors];
+  const engine::Advisor* advisors[Query::kMaxAdvisors];  // those that are asked of single pairs
   int num_free = 0, num_advisors = 0;
   for (int n = 0; n < query().num_advisors; ++n) {
     const engine::Advisor& advisor = query().advisors[n];
@@ -233,7 +232,7 @@ inline void StageOne::cullLinks(Buffer<Entry>& open) {
     if (advisor.freePartsOf) advisors[num_advisors++] = &advisor;
   }
   meetLinks();
-  const auto look = [&](int p) {
+  const auto cullPair = [&](int p) {
     const PairId pair = problem().linkPair(p);
     unsigned mask = problem().isAllowed(pair) ? 0 : kAllLanes;
     for (int n = 0; n < num_free; ++n) mask &= ~static_cast<unsigned>(free[n][p]);
@@ -256,7 +255,7 @@ inline void StageOne::cullLinks(Buffer<Entry>& open) {
   };
   for (int i = 0; i < met_pairs_.size(); ++i) {
     for (std::uint64_t left = met_pairs_[i]; left && !horizon_.isOver(); left &= left - 1) {
-      look(64 * i + __builtin_ctzll(left));
+      cullPair(64 * i + __builtin_ctzll(left));
     }
   }
 }

@@ -26,16 +26,17 @@ struct SweptLss {
   double ulps, rate;  ///< what a difference with something else rounds by: roundingPart(ulps, rate)
 };
 
-/// @param f  frame of the step that carries the body, seen from the world; null where it stands still.
-FCL_ARTIC_INLINE void sweepLss(const FrameLanes* f, const MotionBounds& b, bool first_order, const Body& body, double d,
-                               SweptLss& s) {
+/// @param motion  of the step that carries the body, seen from the world.
+FCL_ARTIC_INLINE void sweepLss(const FrameMotion& motion, const Body& body, SweptLss& s) {
+  const FrameLanes* const f = motion.frame;
+  const MotionBounds& b = motion.bounds;
   s.radius = 0;
   double reach = 0;
   for (int end = 0; end < 2; ++end) {
     const Vec3 p(body.lss + 3 * end);
     reach = max(reach, norm(p) * (1 + 8 * kUlp));
     if (f) {
-      s.radius = max(s.radius, sweepCenter(*f, b, first_order, p, body.lss[6], d, s.end[end]));
+      s.radius = max(s.radius, sweepCenter(motion, p, body.lss[6], s.end[end]));
       continue;
     }
     s.radius = body.lss[6];
@@ -43,9 +44,9 @@ FCL_ARTIC_INLINE void sweepLss(const FrameLanes* f, const MotionBounds& b, bool 
   }
   const Vec3Lanes e = s.end[1].c[0] - s.end[0].c[0];
   s.per_square = Lanes(1.0) / max(dot(e, e), Lanes(kLeastSquare));
-  s.sizes = (f ? b.length + b.D1 * d : 0) + reach + s.radius;
+  s.sizes = (f ? b.length + b.D1 * motion.d : 0) + reach + s.radius;
   s.ulps = f ? b.ulps : 0;
-  s.rate = f ? b.rounding_rate * d : 0;
+  s.rate = f ? b.rounding_rate * motion.d : 0;
 }
 
 /// Box in the world, `margin` wider.
@@ -76,6 +77,14 @@ FCL_ARTIC_INLINE unsigned greaterThanRoot(Lanes a, double b, Lanes square) {
 /// and take 5 to 10 % longer.
 constexpr int kNearestSteps = 1;
 
+/// Where a link's segment and a body's box are nearest in the middle of each lane, in the body's tree frame. Nothing is
+/// proven of it.
+struct NearestToBox {
+  Lanes square;         ///< about the square of their distance
+  Vec3Lanes point;      ///< of the segment
+  Vec3Lanes direction;  ///< from the box to the segment, of any length
+};
+
 /// Lanes in which a link's line swept sphere is certainly more than `margin` from a body that stands still.
 ///
 /// In each lane the direction l goes from the box to the segment as they stand in its middle, in the body's tree frame;
@@ -84,19 +93,17 @@ constexpr int kNearestSteps = 1;
 /// a point of the segment between them lies above the lesser. So all are apart by that minus h, over |l|, minus both
 /// balls (doc/NUMERICS.md, "Line swept spheres").
 /// @param inverse  the world in the body's tree frame.
-/// @param[out] square  about the square of the segment's distance from the box in the middle of each lane.
-/// @param[out] nearest  the segment's point there, in the body's tree frame.
-/// @param[out] l  the direction.
 inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Placement& inverse, double margin,
-                               Lanes& square, Vec3Lanes& nearest, Vec3Lanes& l) {
+                               NearestToBox& nearest) {
+  Vec3Lanes& l = nearest.direction;
   const Mat3 R(inverse.R);
   const Vec3Lanes t = spread(Vec3(inverse.t)), lo = spread(Vec3(box.lo)), hi = spread(Vec3(box.hi));
   const Vec3Lanes begin = R * s.end[0].c[0] + t, e = R * s.end[1].c[0] + t - begin;
   Lanes part(0.5);
   for (int step = 0;; ++step) {
-    nearest = mulAdd(e, part, begin);
-    const Vec3Lanes p = min(max(nearest, lo), hi);
-    l = nearest - p;
+    nearest.point = mulAdd(e, part, begin);
+    const Vec3Lanes p = min(max(nearest.point, lo), hi);
+    l = nearest.point - p;
     if (step == kNearestSteps) break;
     part = min(max(dot(p - begin, e) * s.per_square, Lanes(0.0)), Lanes(1.0));
   }
@@ -114,9 +121,10 @@ inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Plac
   double extent = box.radius + margin;
   for (int k = 0; k < 3; ++k) extent += max(abs(box.lo[k]), abs(box.hi[k]));
   const double pad = roundingPart(s.ulps + inverse.ulps, s.rate) * (s.sizes + inverse.length + extent) + kLeastLength;
-  square = dot(l, l);
-  const unsigned known = greater(square, Lanes(kLeastSquare));
-  return known & greaterThanRoot(min(least[0], least[1]) + at - h, s.radius + box.radius + margin + pad, square);
+  nearest.square = dot(l, l);
+  const unsigned known = greater(nearest.square, Lanes(kLeastSquare));
+  return known &
+         greaterThanRoot(min(least[0], least[1]) + at - h, s.radius + box.radius + margin + pad, nearest.square);
 }
 
 /// Lanes in which two links' line swept spheres are certainly more than `margin` apart. It is the same proof along the
@@ -133,15 +141,15 @@ inline unsigned certainlyApart(const SweptLss& a, const SweptLss& b, double marg
   s = min(max(mulAdd(t, xy, xr) / xx, zero), one);
   const Vec3Lanes l = mulAdd(y, t, r) - x * s;
 
-  Lanes of_a[2][3], of_b[2][3], least;
+  Lanes projected_a[2][3], projected_b[2][3], least;
   for (int end = 0; end < 2; ++end) {
     for (int order = 0; order < 3; ++order) {
-      of_a[end][order] = dot(l, a.end[end].c[order]);
-      of_b[end][order] = dot(l, b.end[end].c[order]);
+      projected_a[end][order] = dot(l, a.end[end].c[order]);
+      projected_b[end][order] = dot(l, b.end[end].c[order]);
     }
   }
   for (int i = 0; i < 4; ++i) {
-    const Lanes *p = of_a[i & 1], *q = of_b[i >> 1];
+    const Lanes *p = projected_a[i & 1], *q = projected_b[i >> 1];
     const Lanes low = leastPoint(q[0] - p[0], q[1] - p[1], q[2] - p[2]);
     least = i ? min(least, low) : low;
   }

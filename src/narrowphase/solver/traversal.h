@@ -5,8 +5,10 @@
 #pragma once
 
 #include "narrowphase/solver/depths.h"
+#include "narrowphase/solver/effort_throttle.h"
 #include "narrowphase/solver/entry.h"
 #include "narrowphase/solver/hull_simplices.h"
+#include "narrowphase/solver/node_shape.h"
 #include "narrowphase/solver/pose_proofs.h"
 #include "narrowphase/swept_difference.h"
 
@@ -20,14 +22,14 @@ constexpr double kLargerNode = 2;
 /// 0.35 to 1.4 is within 30 %.
 constexpr double kSplitTime = 0.7;
 /// Hulls that overlap in this number of lanes are left to their triangles.
-constexpr int kMostHullOverlaps = 2;
+constexpr int kMaxHullOverlaps = 2;
 /// The same for convex parts. There are many of them, and their own parts come next.
-constexpr int kMostPartOverlaps = 1;
+constexpr int kMaxPartOverlaps = 1;
 /// A traversal that has left this number of pairs open leaves the rest unexamined: that lane will be split anyway.
 /// Measured: 128 are slower for arms, without any bound a body of 40,000 triangles takes up to 20 ms.
-constexpr int kMostOpen = 512;
+constexpr int kMaxOpen = 512;
 /// The same for leaves at single poses, neither proven apart nor in contact, as where bodies rest on each other.
-constexpr int kMostOpenAtPoses = 16;
+constexpr int kMaxOpenAtPoses = 16;
 /// GJK stops when it knows the gap to this part: enough for a direction.
 constexpr double kWitnessAccuracy = 0.1;
 
@@ -41,63 +43,6 @@ FCL_ARTIC_INLINE int middleLane(unsigned lanes) {
   for (int skip = __builtin_popcount(lanes) / 2; skip; --skip) lanes &= lanes - 1;
   return __builtin_ctz(lanes);
 }
-
-/// The proportions of a node's box: its longest axis, and the squares of half its diagonal and of the part of that
-/// across this axis.
-struct Proportions {
-  int longest;
-  double square, across;
-};
-FCL_ARTIC_INLINE Proportions proportionsOf(const Node& node) {
-  const Vec3 size = (doublesOf(node.hi) - doublesOf(node.lo)) * 0.5;
-  int longest = size[1] > size[0] ? 1 : 0;
-  longest = size[2] > size[longest] ? 2 : longest;
-  const double square = dot(size, size);
-  return {longest, square, square - size[longest] * size[longest]};
-}
-
-/// Whether a node is smaller than a motion: its radius is, or that of its section where that is thin. (Slivers lie side
-/// by side: a motion wider than they are has them all in each other's way, however long they are. Measured: the slowest
-/// queries of two tubes of slivers take a sixth of the time, nothing else changes but slivers against a ball, which
-/// take longer by two thirds.)
-FCL_ARTIC_INLINE bool isSmaller(const Node& node, double motion) {
-  constexpr double kThin = 0.125;  // as part of the radius
-  if (node.radius < motion) return true;
-  const Proportions box = proportionsOf(node);
-  return box.across < kThin * kThin * box.square && box.across < motion * motion;
-}
-
-/// The axis along which a node's box is a rod, several times as long as it is thick; -1: it is none.
-FCL_ARTIC_INLINE int axisOfRod(const Node& node) {
-  constexpr double kThick = 0.25;  // half across, as part of half the diagonal
-  const Proportions box = proportionsOf(node);
-  return box.across < kThick * kThick * box.square ? box.longest : -1;
-}
-/// A bounded node's box as a piece.
-inline Piece boxOf(const Node& node) {
-  const Vec3 lo = doublesOf(node.lo), hi = doublesOf(node.hi);
-  Piece box;
-  box.kind = PieceKind::box;
-  middleOf(node).store(box.center);
-  ((hi - lo) * 0.5).store(box.size);
-  box.reach = norm(max(abs(lo), abs(hi))) * (1 + 8 * kUlp);
-  return box;
-}
-
-/// Whether something is still worth trying: while about one of kGain tries succeeds; else once in kWait times.
-class Worth {
- public:
-  void begin() { credit_ = kFirst; }
-  bool isTime() { return credit_ >= 0 || ++credit_ == 0; }
-  void tell(bool success) {
-    credit_ = success ? min(credit_ + kGain, kMost) : credit_ - 1;
-    if (credit_ < 0) credit_ = -kWait;
-  }
-
- private:
-  static constexpr int kFirst = 16, kGain = 8, kMost = 64, kWait = 128;
-  int credit_ = kFirst;
-};
 
 /// The purpose of a traversal.
 enum class Aim {
@@ -118,8 +63,8 @@ struct LaneSearch {
 
 /// How directions are looked for that keep two pieces apart.
 struct DirectionSearch {
-  int most_overlaps;  ///< number of lanes with overlap at the middle that ends the search
-  Simplex& last;      ///< GJK begins with it, and leaves there the one that it ends with
+  int max_overlaps;  ///< number of lanes with overlap at the middle that ends the search
+  Simplex& last;     ///< GJK begins with it, and leaves there the one that it ends with
   LaneSearch lanes = {};
 };
 
@@ -147,12 +92,12 @@ class Traversal : PartOfSolver {
   /// Says that the root nodes of all pairs are tested over this batch: descend() does not test them over it again.
   void rootsAreTested(Seen seen) { roots_tested_ = seen->batchNumber(); }
 
-  struct HullLook {
+  struct HullTest {
     unsigned mask;      ///< lanes in which the hulls around both bodies are not certainly apart
     bool within;        ///< Entry::within
     unsigned overlaps;  ///< lanes at whose middles GJK claims that they overlap
   };
-  HullLook hullsMayTouch(Seen seen, unsigned mask, bool suspect, LaneSearch search);
+  HullTest hullsMayTouch(Seen seen, unsigned mask, bool suspect, LaneSearch search);
 
   /// Goes down from a pair of nodes in the lanes of `mask`. Entries that stay undecided are appended to `open`.
   void descend(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open);
@@ -182,7 +127,7 @@ class Traversal : PartOfSolver {
   PoseProofs& proofs_;
 
   HullSimplices simplices_;
-  Worth across_rods_;
+  EffortThrottle across_rods_;
   struct FreeNodes {
     PairId pair;
     const std::uint64_t* nodes;
@@ -207,9 +152,9 @@ inline unsigned Traversal::nodesMayTouch(Seen seen, int a, int b, unsigned mask)
     mask &= ~box(other);
   if (!mask) return 0;
   if (A.radius >= engine::kUnbounded || B.radius >= engine::kUnbounded) return mask & ~apartFromUnbounded(seen, a, b);
-  if (across_rods_.isTime()) {
+  if (across_rods_.mayTry()) {
     mask &= ~apartAcrossRods(seen, A, B, mask);
-    across_rods_.tell(!mask);
+    across_rods_.count(!mask);
   }
   return mask;
 }
@@ -259,13 +204,13 @@ inline unsigned Traversal::notSeparated(Seen seen, const PiecePair& pieces, unsi
   const double slack = whole_lanes ? slackOf(seen->side(0), a, b) : 0;
   const auto separatesWhole = [&](int lane) {
     GjkResult g;
-    searchNearest(SweptDifference(seen->side(0), a, b, lane), guess, kWitnessAccuracy, slack, slack, 48, g);
+    searchNearest(SweptDifference(seen->side(0), a, b, lane), guess, {kWitnessAccuracy, slack, 48, slack}, g);
     ++statistics().gjk;
     if (!(g.lower > slack)) return false;
     mask &= ~separated(seen->side(0), a, b, g.n, mask);
     return !(mask >> lane & 1);
   };
-  for (int left = search.most_overlaps; left > 0 && (untried &= horizon_.live() & ~horizon_.contactLane()) != 0;
+  for (int left = search.max_overlaps; left > 0 && (untried &= horizon_.live() & ~horizon_.contactLane()) != 0;
        untried &= mask) {
     // The middle one of the lanes left: its direction serves neighbours on both sides, its contact ends the later half.
     const int lane = middleLane(untried);
@@ -278,7 +223,7 @@ inline unsigned Traversal::notSeparated(Seen seen, const PiecePair& pieces, unsi
     const DifferenceBody body = seen->differenceAt(a, b, lane);
     if (!have_guess) guess = body.pose.c;
     GjkResult g;
-    gjk(body, guess, kWitnessAccuracy, a.radius + b.radius + seen->margin(), 48, g, &search.last);
+    gjk(body, guess, {kWitnessAccuracy, a.radius + b.radius + seen->margin(), 48}, g, &search.last);
     search.last = g.simplex;
     ++statistics().gjk;
     guess = g.n;
@@ -315,7 +260,7 @@ inline bool Traversal::isWithin(Seen seen) {
     const Piece &a = *seen->a().outer, &b = *seen->b().outer;
     const DifferenceBody body = seen->differenceAt(a, b, kLanes / 2);
     GjkResult g;
-    gjk(body, body.pose.c, kWitnessAccuracy, 0, 48, g);
+    gjk(body, body.pose.c, {kWitnessAccuracy, 0, 48}, g);
     ++statistics().gjk;
     return g.overlap && depthWithin(g.simplex) > kBarely * small.radius;
   }
@@ -324,14 +269,14 @@ inline bool Traversal::isWithin(Seen seen) {
 
 /// Tests the hulls of two bodies. Most pairs of neighbours need no more, before any of their triangles is looked at.
 /// @param suspect  overlapping hulls count as suspected contact.
-inline Traversal::HullLook Traversal::hullsMayTouch(Seen seen, unsigned mask, bool suspect, LaneSearch search) {
+inline Traversal::HullTest Traversal::hullsMayTouch(Seen seen, unsigned mask, bool suspect, LaneSearch search) {
   const TreeView &A = seen->a(), &B = seen->b();
   if (A.num_pieces == 1 && B.num_pieces == 1)
     return {provesAny() ? leavesMayTouch(seen, 0, 0, mask, true) : mask, false, 0};
   if (!A.outer || !B.outer) return {mask, false, 0};
   if (isWithin(seen)) return {mask, true, 0};
   unsigned overlaps = 0;
-  const DirectionSearch of_hulls = {kMostHullOverlaps, simplexOf(seen->pair()), search};
+  const DirectionSearch of_hulls = {kMaxHullOverlaps, simplexOf(seen->pair()), search};
   mask = notSeparated(seen, {*A.outer, *B.outer}, mask, of_hulls, [&](int lane) {
     overlaps |= 1u << lane;
     if (provesAny() && proofs_.vertexInside(seen, lane)) return;
@@ -353,7 +298,7 @@ inline unsigned Traversal::partsMayTouch(Seen seen, int a, int b, unsigned mask)
   if (!A.parts && !B.parts) return mask;
   const Piece *x = part(A, a, B), *y = x ? part(B, b, A) : nullptr;
   Simplex last;
-  return y ? notSeparated(seen, {*x, *y}, mask, {kMostPartOverlaps, last}, [](int) {}) : mask;
+  return y ? notSeparated(seen, {*x, *y}, mask, {kMaxPartOverlaps, last}, [](int) {}) : mask;
 }
 
 /// Lanes of `mask` in which two leaves are not certainly apart.
@@ -404,9 +349,9 @@ inline unsigned Traversal::traverse(Seen seen, const Entry& root, Aim aim, Buffe
   // Earliest lane first: once a contact is found, nothing was spent on later lanes alone.
   const auto push = [&](const Entry& e) { stack_[__builtin_ctz(e.mask)].push(e); };
   const double split_time = aim == Aim::split ? kSplitTime * seen->amplitude() : 0;
-  const int most = aim == Aim::split   ? open.size() + kMostOpen
-                   : aim == Aim::poses ? open.size() + kMostOpenAtPoses
-                                       : 0x7fffffff;
+  const int max_open = aim == Aim::split   ? open.size() + kMaxOpen
+                       : aim == Aim::poses ? open.size() + kMaxOpenAtPoses
+                                           : 0x7fffffff;
   unsigned blocked = 0;
   Entry e = root;
   bool held = true;  // e goes on with a child; else it is the next of the stacks
@@ -443,16 +388,12 @@ inline unsigned Traversal::traverse(Seen seen, const Entry& root, Aim aim, Buffe
         open.push(e);
       }
     } else if ((aim != Aim::decide && e.mask == horizon_.contactLane()) ||
-               (isSmaller(x, split_time) && isSmaller(y, split_time)) || open.size() > most) {
+               (isSmaller(x, split_time) && isSmaller(y, split_time)) || open.size() > max_open) {
       open.push(e);
     } else {
-      if (y.isLeaf() || (!x.isLeaf() && x.radius > y.radius)) {
-        push({e.pair, x.right(), e.b, e.mask});
-        e.a = x.left();
-      } else {
-        push({e.pair, e.a, y.right(), e.mask});
-        e.b = y.left();
-      }
+      const bool split_a = y.isLeaf() || (!x.isLeaf() && x.radius > y.radius);
+      push(split_a ? Entry{e.pair, x.right(), e.b, e.mask} : Entry{e.pair, e.a, y.right(), e.mask});
+      (split_a ? e.a : e.b) = (split_a ? x : y).left();
       held = (e.mask >> lane & 1) != 0;
       if (!held) push(e);
     }

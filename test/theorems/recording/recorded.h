@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A number that remembers how it was computed. The kernel's own headers are compiled with this in the place of double
-// (`#define double`), so that a run of the kernel leaves behind the formulas that it went through, operation by
-// operation and in its order: nobody copies them by hand, and they cannot drift.
+// (`#define double`). So a run of the kernel leaves the formulas that it went through, operation by operation and in
+// its order. Nobody copies them by hand, and they cannot drift.
 //
 // Sums, differences, products, quotients, roots and fused products are recorded; -a, |a|, min and max are exact and go
 // the way that the present values lead. Products with 0 and 1 and sums with the constant 0 are exact too, and left out.
-// What is computed of constants alone stays a constant, as the compiler would have it.
+// A value computed from constants alone stays a constant, as the compiler would have it.
 #pragma once
 
 #include <cmath>
@@ -129,7 +129,7 @@ inline Recorded productPlus(Recorded a, Recorded b, Recorded c) {
   return {a.value * b.value + c.value, record(Operation::product_plus, a, b, c)};
 }
 
-/// What reinterpret_cast says, and between a register and a vector of the compiler's too.
+/// The same as reinterpret_cast, and between a register and a vector of the compiler's too.
 template <class To, class From>
 inline To as(const From& x) {
   if constexpr (std::is_pointer_v<To>) {

@@ -15,7 +15,7 @@
 
 namespace fcl_artic_moveit {
 
-/// What a body of the manager is in MoveIt.
+/// The body in MoveIt that a body of the manager stands for.
 struct BodyName {
   enum Kind { link, attached, object } kind = object;  ///< a link, an attached body, an object of the world
   std::string id;                                      ///< its name in MoveIt
@@ -23,10 +23,11 @@ struct BodyName {
 
 /// A MoveIt robot and what surrounds it, as a manager.
 ///
-/// What is checked is what MoveIt checks (PlanningScene::checkCollision()), with `padding` the distance that a link and
-/// what it carries have to keep from the world:
-/// - links with geometry against each other, neighbours too; attached bodies against links, except those that they may
-///   touch, and against each other, except on the same link or where one is among the other's touch links; both without
+/// The cell checks what MoveIt checks (PlanningScene::checkCollision()). `padding` is the distance that a link, and
+/// each body that it carries, has to keep from the world:
+/// - links with geometry against each other, neighbours too, without padding;
+/// - attached bodies against links, except those that they may touch, without padding;
+/// - attached bodies against each other, except on the same link or where one is among the other's touch links, without
 ///   padding;
 /// - links and attached bodies against the objects of the world, octomap included, with the link's padding;
 /// - but no pair of which neither body moves with the group, and none that the allowed collision matrix always allows,
@@ -35,8 +36,8 @@ struct BodyName {
 /// A mimic joint that the group does not move stands where the state has it, also where its master would have it
 /// elsewhere: MoveIt keeps what was measured.
 ///
-/// update() takes over a scene; what is the same as before is kept with all that was computed of it. A Cell whose
-/// update() threw is of no further use. One thread at a time may use a Cell.
+/// update() takes over a scene. Bodies that are the same as before are kept, with all data that were computed from
+/// them. A Cell whose update() threw is of no further use. One thread at a time may use a Cell.
 class Cell {
  public:
   /// Shares ownership of the model.
@@ -49,8 +50,8 @@ class Cell {
   /// @param state  of which the attached bodies count.
   /// @param group  whose joints move; null: all.
   /// @throws std::invalid_argument naming link or object: another model, a link's scale that is not 1, a padding that
-  ///   is negative or not finite, a shape that toFcl() refuses, an unbounded shape (plane) on a link or in a hand,
-  ///   geometry or a pose that ArticulatedCollisionManager refuses.
+  ///   is negative or not finite, a shape that toFcl() refuses. Also for an unbounded shape (plane) on a link or in a
+  ///   hand, and for geometry or a pose that ArticulatedCollisionManager refuses.
   void update(const collision_detection::CollisionEnv& env, const collision_detection::AllowedCollisionMatrix& acm,
               const moveit::core::RobotState& state, const moveit::core::JointModelGroup* group);
 
@@ -61,9 +62,9 @@ class Cell {
   /// The same, to be kept until the next update().
   std::shared_ptr<const fcl_artic::ArticulatedCollisionManager> sharedManager() const { return manager_; }
   const moveit::core::RobotModelConstPtr& model() const { return model_; }
-  /// Who a body of an answer is in MoveIt.
+  /// The body in MoveIt that a body of an answer stands for.
   const BodyName& nameOf(const fcl_artic::BodyRef& body) const { return names_.at(body.name).first; }
-  /// The distance that the links' padding has two bodies of an answer keep, m.
+  /// The distance that two bodies of an answer have to keep because of the links' padding, m.
   double paddingBetween(const fcl_artic::BodyRef& a, const fcl_artic::BodyRef& b) const;
   /// How often the robot was read: 1 as long as nothing asked for another tree.
   int robotsRead() const { return robots_read_; }
@@ -81,7 +82,7 @@ class Cell {
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();  ///< of the shape, in the world or in the link's frame
     std::string carrier;                                     ///< link of the tree; empty for an object
   };
-  /// What is registered beside the links, by its name in the manager.
+  /// A body that is registered beside the links, by its name in the manager.
   struct Registered {
     shapes::ShapeConstPtr shape;
     Eigen::Isometry3d pose;
@@ -115,7 +116,7 @@ class Cell {
   std::map<std::string, Registered> registered_;
   std::map<const shapes::Shape*, std::pair<shapes::ShapeConstPtr, std::shared_ptr<fcl::CollisionGeometryd>>> geometry_;
   std::map<std::string, double> body_margins_;
-  /// Pairs of what links carry that have to be checked; those that no joint moves are the library's to judge.
+  /// Pairs of carried bodies that have to be checked. (The library judges pairs that no joint moves.)
   std::set<std::pair<std::string, std::string>> wanted_;
 };
 

@@ -28,8 +28,8 @@ struct CertifierOptions {
   double margin = 0;
   /// Number of tests after which the answer is `undecided`; 0: no limit.
   std::uint64_t budget = 0;
-  /// Time after which the answer is `undecided`, s; 0: no limit. What is made of a robot when it is first seen does not
-  /// count.
+  /// Time after which the answer is `undecided`, s; 0: no limit. The time to read a robot when it is first seen does
+  /// not count.
   double time_limit = 0;
 
   /// @throws std::invalid_argument naming the value: margin, mimic tolerance, blend or time limit negative or not
@@ -52,7 +52,7 @@ struct Verdict : fcl_artic::Bracket {
     double padding = 0;                                ///< m, that the links' padding has the two keep
   };
   /// The first contact, and those of all other pairs of bodies that touch between the same two waypoints, each pair's
-  /// first. Empty where there is none. Only the first one's time is proven to be free of contact before.
+  /// first. Empty where there is none. Only before the first one's time it is proven that nothing touches.
   std::vector<Contact> contacts;
   std::size_t waypoint = 0;  ///< that is at or before the first contact
   /// Values of the group's joint variables at the first contact, with their names, rad or m.
@@ -70,7 +70,7 @@ struct RepairOptions {
   double acceleration_scaling = 1;
 };
 
-/// A way around what a trajectory touches, certified free.
+/// A way around the obstacles that a trajectory touches, certified free.
 struct Repair {
   robot_trajectory::RobotTrajectoryPtr trajectory;
   Verdict verdict;
@@ -96,8 +96,8 @@ class Certifier {
   /// @param acm         PlanningScene::getAllowedCollisionMatrix().
   /// @param trajectory  whose first waypoint has the attached bodies.
   /// @param start       what the robot starts from; null: waypoint 0 is taken at its word.
-  /// @throws std::invalid_argument as CertifierOptions::check(), toMotion() and Cell::update(), for waypoints that
-  ///   carry other bodies than the first, and for a first that lacks a body which `start` carries, or has it on another
+  /// @throws std::invalid_argument as CertifierOptions::check(), toMotion() and Cell::update(). Also if a waypoint
+  ///   carries other bodies than the first. Also if the first lacks a body which `start` carries, or has it on another
   ///   link or elsewhere: nothing is claimed then.
   Verdict certify(const collision_detection::CollisionEnv& env, const collision_detection::AllowedCollisionMatrix& acm,
                   const robot_trajectory::RobotTrajectory& trajectory, const moveit::core::RobotState* start = nullptr,
@@ -106,8 +106,9 @@ class Certifier {
   /// Whether this package was built with what repair() needs: fcl_artic's component ompl.
   static bool canRepair();
 
-  /// Finds a way around what a trajectory touches (fcl_artic::planning::mend()), times it anew where the trajectory had
-  /// times, by MoveIt's time optimal parameterization and the model's limits, and certifies it as any other.
+  /// Finds a way around the obstacles that a trajectory touches (fcl_artic::planning::mend()), and certifies it as any
+  /// other. If the trajectory had times, MoveIt's time optimal parameterization times the way anew, within the model's
+  /// limits.
   /// @param trajectory  that certify() answers for without throwing.
   /// @throws std::invalid_argument as certify().
   /// @throws std::runtime_error: no such way was found, or it could not be timed so that it is free; that this package

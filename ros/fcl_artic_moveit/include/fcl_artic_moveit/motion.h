@@ -11,7 +11,7 @@
 
 namespace fcl_artic_moveit {
 
-// What lies between two waypoints has the names that the program has: fcl_artic/interpolation.h.
+// Curves between two waypoints have the names that the program has: fcl_artic/interpolation.h.
 using fcl_artic::Interpolation;
 using fcl_artic::interpolationNamed;
 using fcl_artic::Turns;
@@ -21,7 +21,7 @@ struct MotionOptions {
   Interpolation interpolation = Interpolation::automatic;
   Turns turns = Turns::ask;  ///< that a controller's own interpolation leaves open: fcl_artic::turnsOf()
   /// By how much a mimic joint that moves with the group may be off from where its master has it, as encoders are, rad
-  /// or m. What is certified is where the master has it.
+  /// or m. The motion that is certified has the joint where the master has it.
   double mimic_tolerance = 1e-3;
   double blend = 0;  ///< s, half the duration of a blend, of Interpolation::blends
 };
@@ -43,10 +43,11 @@ struct Motion {
 /// joints too where the tree lets them stand. A single waypoint stands still, from 0 to 1.
 /// @param trajectory  of the model that `robot` was made of.
 /// @throws std::invalid_argument, naming waypoint and joint: no waypoint, a joint outside the group that moves, values
-///   that are not finite, mimic joints that are elsewhere than their masters have them, times that do not increase,
+///   that are not finite, times that do not increase. Also for mimic joints not where their masters have them. Also for
 ///   waypoints of which only some have velocities or accelerations, an interpolation for which these or the times are
-///   missing, a step of half a turn (Turns::ask), a floating joint that moves by another curve than linear or by a
-///   controller's, a planar joint with differential drive that moves, unless the interpolation is stated.
+///   missing, and a step of half a turn (Turns::ask). Also for a floating joint that moves by another curve than linear
+///   or by a controller's. Also for a planar joint with differential drive that moves, unless the interpolation is
+///   stated.
 Motion toMotion(const RobotTree& robot, const robot_trajectory::RobotTrajectory& trajectory,
                 const MotionOptions& options = {});
 

@@ -17,9 +17,10 @@ namespace fcl_artic_moveit {
 
 /// Links and joints of a MoveIt robot, and the way from MoveIt's variables to the tree's.
 struct RobotTree {
-  /// All links of the model by their names, in its order. The world of the tree is the model's frame: the parent frame
-  /// of the SRDF's virtual joint, which is a link of the tree then (its root), or the root link. The virtual joint is
-  /// the tree's first joint. Variables have MoveIt's names; mimic joints have none, but for those that stand.
+  /// All links of the model by their names, in its order. The world of the tree is the model's frame. If the SRDF has a
+  /// virtual joint, that is the joint's parent frame, which is then the tree's root link; else it is the root link. The
+  /// virtual joint is the tree's first joint. Variables have MoveIt's names; mimic joints have none, but for those that
+  /// stand.
   std::shared_ptr<const fcl_artic::KinematicTree> tree;
   /// Index of each of the tree's variables among MoveIt's.
   std::vector<std::size_t> variables;

@@ -16,7 +16,7 @@ namespace fcl_artic_moveit {
 /// here the plane is the one that shape_msgs/Plane describes, which RViz shows.
 /// @param shape  an octree is shared, all else is copied.
 /// @throws std::invalid_argument naming the reason: a shape of unknown type, a mesh without triangles or with a vertex
-///   that is not there, a plane without a normal, an octree shape without an octree.
+///   that is not there. Also for a plane without a normal, and an octree shape without an octree.
 std::shared_ptr<fcl::CollisionGeometryd> toFcl(const shapes::Shape& shape);
 
 }  // namespace fcl_artic_moveit

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Stands in the place of the engine's file of this name: one recorded number instead of a processor's register. What
-// each function does is listed in numerics/lanes.h.
+// Stands in the place of the engine's file of this name: one recorded number instead of a processor's register.
+// numerics/lanes.h lists the meaning of each function.
 #pragma once
 
 #include <cstdint>
