@@ -6,6 +6,7 @@
 
 #include "checks.h"
 #include "generator.h"
+#include "scene_file.h"
 
 namespace campaign {
 namespace {
@@ -24,19 +25,20 @@ bool freeAtEnd(const Oracle& oracle) {
   return true;
 }
 
+/// A file of this scene (scene_file.h), and remarks on it.
 std::string describe(const Asked& asked) {
-  std::string words = describe(asked.scene);
+  std::string words = toText({asked.scene});
   for (const PairTruth& p : asked.truth().pairs) {
     const char* verdict = p.hit ? "hit" : p.doubtful ? "doubtful" : "free";
-    words += format("oracle %d %d: %s t %.17g gap %.6g at %.17g\n", p.a, p.b, verdict, p.time, p.gap, p.gap_time);
+    words += format("# oracle %d %d: %s t %.17g gap %.6g at %.17g\n", p.a, p.b, verdict, p.time, p.gap, p.gap_time);
   }
   for (const Answer& answer : asked.answers) {
     static constexpr const char* kVerdicts[] = {"free", "contact", "undecided"};
     const CertifiedResult& r = answer.result;
-    words += format("answer %s [%.17g, %.17g]%s in %.1f us\n", kVerdicts[static_cast<int>(r.status)], r.t_lower,
+    words += format("# answer %s [%.17g, %.17g]%s in %.1f us\n", kVerdicts[static_cast<int>(r.status)], r.t_lower,
                     r.t_upper, r.certain ? " certain" : "", answer.elapsed_us);
     for (const fcl_artic::CertifiedContact& c : r.contacts) {
-      words += format("  %d/%ld %d/%ld [%.17g, %.17g]%s point %.9g %.9g %.9g normal %.9g %.9g %.9g\n",
+      words += format("#  %d/%ld %d/%ld [%.17g, %.17g]%s point %.9g %.9g %.9g normal %.9g %.9g %.9g\n",
                       answer.bodyOf(c.body1.object), static_cast<long>(c.b1), answer.bodyOf(c.body2.object),
                       static_cast<long>(c.b2), c.t_lower, c.t_upper, c.certain ? " certain" : "", c.point.x(),
                       c.point.y(), c.point.z(), c.normal.x(), c.normal.y(), c.normal.z());

@@ -173,7 +173,7 @@ bool replay(const Campaign& campaign, const CaseId& id, std::string& words) {
   Tally tally;
   Case c{0, id, false, tally, {}, &words};
   lookAt(campaign, c);
-  for (const Finding& f : c.findings) words += "FAULT " + f.fault + ": " + f.text + "\n";
+  for (const Finding& f : c.findings) words += "# FAULT " + f.fault + ": " + f.text + "\n";
   return c.findings.empty();
 }
 

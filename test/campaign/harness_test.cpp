@@ -50,7 +50,7 @@ TEST(Harness, FaultsAreCountedByCasesAndNamed) {
 TEST(Harness, ACaseComesBackByItsName) {
   std::string words;
   EXPECT_FALSE(replay(faulty(), {"odd", 13}, words));
-  EXPECT_EQ(words, "seed 13\nFAULT wrong: once\nFAULT wrong: twice\n");
+  EXPECT_EQ(words, "seed 13\n# FAULT wrong: once\n# FAULT wrong: twice\n");
   EXPECT_FALSE(replay(faulty(), {"odd", 17}, words));
   EXPECT_TRUE(replay(faulty(), {"odd", 15}, words));
 }

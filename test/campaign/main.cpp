@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <exception>
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -30,18 +29,17 @@ class AnswerLines {
   void set(const campaign::Asked& asked, const campaign::Case& c) {
     static const char* const verdicts[] = {"free", "contact", "undecided"};
     std::uint64_t hash = 14695981039346656037u;  // FNV-1a
-    for (const char c : campaign::describe(asked.scene)) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
+    for (const char one : campaign::toText({asked.scene}))
+      hash = (hash ^ static_cast<unsigned char>(one)) * 1099511628211u;
     const fcl_artic::CertifiedResult& result = asked.result(0);
     lines_[c.index] = campaign::format("%llu %016llx %s %s %a %a\n", static_cast<unsigned long long>(c.index),
                                        static_cast<unsigned long long>(hash), verdicts[static_cast<int>(result.status)],
                                        result.certain ? "certain" : "-", result.t_lower, result.t_upper);
   }
-  void write(const std::string& file) const {
-    std::FILE* out = std::fopen(file.c_str(), "w");
-    if (!out) throw std::runtime_error("can't write '" + file + "'");
-    for (const std::string& line : lines_) std::fputs(line.c_str(), out);
-    const bool failed = std::ferror(out) != 0;
-    if (std::fclose(out) != 0 || failed) throw std::runtime_error("can't write '" + file + "'");
+  std::string text() const {
+    std::string all;
+    for (const std::string& line : lines_) all += line;
+    return all;
   }
 
  private:
@@ -74,8 +72,8 @@ campaign::Report runArms(campaign::Arms arms, campaign::Options& options, const 
     if (!written.empty()) written[c.index] = asked.scene;
   });
   campaign::Report report = run(campaignOf(arms), options);
-  if (!files.answers.empty()) lines.write(files.answers);
-  if (!files.write_scenes.empty()) campaign::writeScenes(written, files.write_scenes);
+  if (!files.answers.empty()) campaign::writeFile(lines.text(), files.answers);
+  if (!files.write_scenes.empty()) campaign::writeFile(toText(written), files.write_scenes);
   return report;
 }
 
@@ -105,7 +103,9 @@ int main(int argc, char** argv) {
   app.add_option("--seed", options.seed, "seed of the campaign")->capture_default_str();
   app.add_option("--threads", options.threads, "threads; 0: one for each core")->check(CLI::Range(0, 1024));
   app.add_option("--class", options.family, "only this class of cases");
-  const auto* replay = app.add_option("--replay", again.seed, "run the case of this seed (with --class) and dump it");
+  const auto* replay =
+      app.add_option("--replay", again.seed,
+                     "run the case of this seed (with --class) and describe it; of arms as a file for --scenes");
   app.add_flag("--try-spoiling", options.mutants,
                "spoil a copy of each answer in each way, and count what the judge notices");
   Files files;
