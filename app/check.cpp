@@ -21,8 +21,8 @@
 #include "plan_variables.h"
 #include "progress.h"
 #include "query_options.h"
-#include "redon_options.h"
 #include "render/picture.h"
+#include "replay/query_file.h"
 #include "usage.h"
 #include "views.h"
 #include "visibility_options.h"
@@ -36,7 +36,7 @@ constexpr std::size_t kAllContacts = 1000000;
 struct CheckVerb {
   WorldOptions world;
   ViewOptions views;
-  std::string certificate, trajectory, lines;
+  std::string certificate, trajectory, lines, dump, replay;
   InterpolationOptions interpolation;
   std::vector<std::string> from, to, state;
   CertifiedRequest request;
@@ -76,6 +76,7 @@ int runCheck(CheckVerb& options) {
                         {"--html", &options.views.html},
                         {"--certificate", &options.certificate},
                         {"--certificate's world", &certificate_world},
+                        {"--dump", &options.dump},
                         {"--auto-srdf", &options.world.auto_srdf}},
                        inputs);
   World world(options.world);
@@ -122,10 +123,16 @@ int runCheck(CheckVerb& options) {
   CertificateFile certificates(options.certificate);
   request.certificate = certificates.wanted();
   if (!options.lines.empty()) {
-    for (const std::string& note : world.notes(manager)) fmt::print(stderr, "fcl_artic: note: {}\n", note);
+    printNotes(world.notes(manager));
     const int status = checkLines(manager, request, {options.lines, of_motion}, certificates);
     if (certificates.wanted()) world.unwritten.attempt([&] { certificates.write(); });
     return world.unwritten.exitStatus(status);
+  }
+  if (!options.dump.empty()) {  // before it is answered: it may be asked again whatever happens then
+    world.unwritten.attempt([&] {
+      files::write(options.dump,
+                   trajectory ? manager.writeQuery(*trajectory, request) : manager.writeQuery(*motion, request));
+    });
   }
   CertifiedResult result;
   {
@@ -183,6 +190,64 @@ int runCheck(CheckVerb& options) {
   return world.unwritten.exitStatus(exitStatus(result));
 }
 
+/// Asks a query of --dump again.
+int runReplay(const CheckVerb& options) {
+  const RecordedQuery query = replay::readQueryFile(options.replay);
+  const CertifiedResult result = query.ask();
+  std::vector<std::string> notes = query.manager.notes();
+  if (query.library != FCL_ARTIC_VERSION || query.instruction_set != instructionSet()) {
+    notes.push_back(
+        fmt::format("the query was written by fcl_artic {} with the instruction set {}; this is {} with {}: bits may "
+                    "differ",
+                    query.library, query.instruction_set, FCL_ARTIC_VERSION, instructionSet()));
+  }
+  const auto configuration = [&](double t) {
+    return query.trajectory ? query.trajectory->configuration(t) : query.motion->configuration(t);
+  };
+  const double begin = query.trajectory ? query.trajectory->beginTime() : 0;
+  const double end = query.trajectory ? query.trajectory->endTime() : 1;
+  Report report{query.manager.tree(), query.request, result, notes, configuration, begin, end};
+  if (query.trajectory) report.pieces = query.trajectory->numPieces();
+  if (options.json) {
+    fmt::print("{}\n", jsonReport(report).dump(2));
+  } else {
+    fmt::print("{}", textReport(report));
+  }
+  return exitStatus(result);
+}
+
+/// Adds --dump and --replay. All that a replay is about stands in its file: other options would be without effect.
+void addReplay(CLI::App& check, CheckVerb& options) {
+  CLI::Option* lines = check.get_option("--lines");
+  check
+      .add_option("--dump", options.dump,
+                  "Write the query to FILE, with all that it depends on, before it is answered: --replay asks it again")
+      ->excludes(lines)
+      ->group("Output")
+      ->type_name("FILE");
+  check.get_option("--robot")->required(false);
+  check
+      .add_option("--replay", options.replay,
+                  "Ask the query of a --dump again, with the same bits; no other option than --json goes with it")
+      ->check(requireInput)
+      ->group("Motion")
+      ->type_name("FILE");
+}
+
+/// @throws CLI::ParseError for what is there beside --replay, and for what is not there without.
+void requireReplayAlone(const CLI::App& check) {
+  const CLI::Option* replay = check.get_option("--replay");
+  if (replay->count() == 0) {
+    const CLI::Option* robot = check.get_option("--robot");
+    if (robot->count() == 0) throw CLI::RequiredError(robot->get_name());
+    return;
+  }
+  for (const CLI::Option* other : check.get_options()) {
+    if (other->count() == 0 || other == replay || other->check_lname("json")) continue;
+    throw CLI::ExcludesError("--replay", other->get_name());
+  }
+}
+
 }  // namespace
 
 void addCheck(CLI::App& program, int& exit_status) {
@@ -203,7 +268,8 @@ void addCheck(CLI::App& program, int& exit_status) {
       "repeats.\n"
       "Exit status: 0 free (proven), 1 contact, 2 error, 3 undecided (budget) or nothing checked; with --lines the "
       "worst\n"
-      "of all answers: 2 before 1 before 3.");
+      "of all answers: 2 before 1 before 3.\n"
+      "If an answer surprises you: --dump writes the query as one file, which a report of it should have.");
 
   addWorldOptions(*check, o.world);
 
@@ -244,10 +310,9 @@ void addCheck(CLI::App& program, int& exit_status) {
           [&request](const std::string& name) {
             request.method = name == "redon2004" ? Method::redon2004 : Method::standard;
           },
-          "standard, or redon2004: the paper's own, with the options below")
+          "standard, or redon2004: the paper's own")
       ->check(CLI::IsMember({"standard", "redon2004"}))
       ->group("Query");
-  addRedonOptions(*check, request.redon);
   addVisibilityOptions(*check, o.visibility);
 
   check->add_flag("--json", o.json, "Answer in JSON, all digits")->group("Output");
@@ -258,9 +323,12 @@ void addCheck(CLI::App& program, int& exit_status) {
       ->type_name("FILE");
   for (CLI::Option* view : addViewOptions(*check, o.views)) view->excludes(lines);
   clearance->excludes(lines);
-  check->callback([options, from, to, trajectory, lines, &exit_status] {
+  addReplay(*check, o);
+  check->callback([check, options, from, to, trajectory, lines, &exit_status] {
+    requireReplayAlone(*check);
     options->interpolation.require();
-    const bool waypoints = trajectory->count() > 0 || lines->count() > 0;
+    const bool replay = !options->replay.empty();
+    const bool waypoints = trajectory->count() > 0 || lines->count() > 0 || replay;
     for (const CLI::Option* end : {from, to}) {
       if (end->count() == 0 && !waypoints) throw CLI::RequiredError(end->get_name());
     }
@@ -274,7 +342,7 @@ void addCheck(CLI::App& program, int& exit_status) {
       throw CLI::ExcludesError("--shortest", "--interpolation " + options->interpolation.name);
     }
     try {
-      exit_status = runCheck(*options);
+      exit_status = replay ? runReplay(*options) : runCheck(*options);
     } catch (const std::exception& error) {
       if (options->json)
         fmt::print("{}\n", nlohmann::ordered_json{{"status", "error"}, {"error", error.what()}}.dump(2));

@@ -22,6 +22,7 @@
 #include "render/picture.h"
 #include "robot_options.h"
 #include "setup/neighbours.h"
+#include "text/counted.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -40,7 +41,7 @@ struct SrdfVerb {
 };
 
 std::string pairsText(std::size_t n) {
-  return fmt::format("{} pair{}", n, n == 1 ? "" : "s");
+  return text::counted(n, "pair");
 }
 
 const char* meaningOf(LinkPairKind kind) {
@@ -303,7 +304,7 @@ std::vector<std::string> doubtsOf(const KinematicTree& tree, const LinkPairRepor
     return std::make_pair(count, text);
   };
   if (const auto [count, text] = names(LinkPairKind::sometimes); count > 0) {
-    lines.push_back(fmt::format("{} allowed pair{} can {}, and {} not checked: {}", count, count == 1 ? "" : "s", touch,
+    lines.push_back(fmt::format("{} can {}, and {} not checked: {}", text::counted(count, "allowed pair"), touch,
                                 count == 1 ? "is" : "are", text));
   }
   if (const auto [count, text] = names(LinkPairKind::unproven); count > 0) {

@@ -13,8 +13,8 @@
 
 #include <fmt/format.h>
 
-#include "angles.h"
 #include "exit_status.h"
+#include "kinematics/angles.h"
 #include "robot_options.h"
 
 namespace fcl_artic::app {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Links 2 to 6 of a PUMA 560 chain, about 1k triangles each, amid 10 bumpy spheres of 100k triangles in all; steps of
-// 1, 5 and 30 degrees of every joint from random free starts; robot against itself off. Beside the certified query run
-// FCL's own ways, on the same queries and in the same process.
+// Links 2 to 6 of a PUMA 560 chain, about 1k triangles each, amid 10 bumpy spheres of 100k triangles in all (or of
+// others, --triangles), or a chain of other joints and the same reach; steps of 1, 5 and 30 degrees of every joint from
+// random free starts; robot against itself off. Beside the certified query run FCL's own ways, on the same queries and
+// in the same process.
 
+#include <algorithm>
 #include <deque>
 #include <functional>
 #include <iostream>
@@ -21,7 +23,7 @@ int main(int argc, char** argv) {
   Report report("bench_arm");
   CLI::App app("Certified queries of an arm amid spheres, beside FCL's own ways");
   std::size_t count = 100, rival_count = 100;
-  int passes = 3;
+  int passes = 3, joints = 0;
   ArmSceneOptions options;
   std::vector<double> steps = {1, 5, 30};
   bool merged = false, no_rivals = false;
@@ -32,11 +34,20 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--steps", steps, "degrees, every joint")->capture_default_str();
   app.add_option("--triangles", options.scene_triangles, "of the scene")->capture_default_str();
+  app.add_option("--joints", joints, "a random chain of so many, of the same reach, in place of the PUMA")
+      ->check(CLI::Range(1, 100));
   app.add_option("--seed", options.seed, "of scene and queries")->capture_default_str();
   app.add_flag("--merged", merged, "certified query: the scene as one mesh instead of one per sphere");
   app.add_flag("--no-rivals", no_rivals, "certified queries only");
   if (const auto status = readOptions(app, report, argc, argv)) return *status;
 
+  if (joints > 0) {
+    constexpr double kReach = 0.95;
+    Random random(options.seed + static_cast<std::uint64_t>(joints));
+    options.rows = randomRows(joints, kReach, random);
+    options.first_link = 1;
+    options.thickness = std::clamp(0.25 * kReach / joints, 0.015, 0.055);
+  }
   const ArmScene scene = makeArmScene(options);
   CertifiedArm certified(scene, merged);
   std::optional<FclRivals> rivals;

@@ -2,8 +2,8 @@
 //
 // What a planner pays for a motion: through the manager, through OMPL's checkMotion() with our validator, and through
 // OMPL's own discrete validator (1 %, the end point first, then bisection) over FCL's check of a state, on the same
-// edges in one run. Then whole plans by RRTConnect with either validator, looked at 100 times more closely.
-// FCL_ARTIC_DATA names the folder with robots/, problems/ and edges/.
+// edges in one run. (Whole plans: `bench_tables planning`.) FCL_ARTIC_DATA names the folder with robots/, problems/ and
+// edges/.
 //
 // Exit status 1 when an edge that was seen to collide is accepted.
 
@@ -242,36 +242,6 @@ void addRandom(Bench& bench, const std::string& name, const Robot& robot, const 
   bench.add(name, "random hit", std::move(hit));
 }
 
-/// Times plans with simplification; counts those that FCL sees collide at 1/100 of OMPL's default step.
-void addPlans(Report& report, const std::string& scene, const Environment& environment,
-              const std::map<int, World>& worlds) {
-  for (const bool ours : {true, false}) {
-    const char* method = ours ? "RRTConnect with our validator" : "RRTConnect with FCL, OMPL's 1 %";
-    report.add(scene, "plan and simplify", method, [&report, &environment, &worlds, scene, method, ours] {
-      std::vector<const World*> all;
-      for (const Problem& problem : environment.problems) all.push_back(&worlds.at(problem.index));
-      std::vector<Plans> plans(all.size());
-      Measured measured = measure(all.size(), 1, [&](std::size_t i) {
-        const Problem& problem = environment.problems[i];
-        plans[i] = plan(ours ? all[i]->ours.si : all[i]->fcl, all[i]->ours, problem.start, problem.goal, 1, 20.0);
-        return plans[i].solved ? 1.0 : kFree;
-      });
-      int solved = 0, colliding = 0;
-      for (std::size_t i = 0; i < all.size(); ++i) {
-        solved += plans[i].solved;
-        ob::ScopedState<> state(all[i]->ours.space);
-        colliding += firstSample(all[i]->ours, plans[i].simplified, [&](const std::vector<double>& q) {
-                       all[i]->ours.setState(state.get(), q);
-                       return !all[i]->fcl->isValid(state.get());
-                     }) >= 0;
-      }
-      report.note(fmt::format("{}, {}: {} of {} solved, {} simplified plans collide when sampled 100 times finer",
-                              scene, method, solved, all.size(), colliding));
-      return measured;
-    });
-  }
-}
-
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -279,12 +249,11 @@ int main(int argc, char** argv) try {
   CLI::App app("A planner's motions beside OMPL's discrete validator over FCL (FCL_ARTIC_DATA names the data)");
   int passes = 3;
   std::size_t random = 200;
-  bool with_plans = false, no_other_robots = false;
+  bool no_other_robots = false;
   app.add_option("--passes", passes, "passes over the edges; the least time of each counts")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--random", random, "random motions of each kind for the UR5 and the Fanuc")->capture_default_str();
-  app.add_flag("--plans", with_plans, "time whole plans too");
   app.add_flag("--panda-only", no_other_robots, "leave out the UR5 and the Fanuc");
   if (const auto status = readOptions(app, report, argc, argv)) return *status;
   const std::filesystem::path data = sharedData();
@@ -340,9 +309,6 @@ int main(int argc, char** argv) try {
     for (int v = 0; v < robots["fanuc"].tree->dof(); ++v) fanuc.joints.push_back(robots["fanuc"].tree->variableName(v));
     open("fanuc", "fanuc");
     addRandom(bench, "fanuc table_pick", robots["fanuc"], fanuc, worlds["fanuc"], random, 2.7);
-  }
-  if (with_plans) {
-    for (const std::string name : kEnvironments) addPlans(report, "panda " + name, environments[name], worlds[name]);
   }
 
   report.run();

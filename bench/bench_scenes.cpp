@@ -2,7 +2,8 @@
 //
 // What a free motion of a Panda costs as its surroundings grow: 10 to 10,000 boxes, cylinders and balls, all within
 // reach (clutter) or spread out at one density (room), and 20 bumpy spheres of 1k to 1M triangles, as 20 meshes and as
-// one. Random motions of 2.7 rad, self collision included. FCL_ARTIC_DATA names the folder with robots/ and problems/.
+// one. Random motions of 2.7 rad, self collision included. And a cloud of up to a million points, beside the same
+// points as cells of an OcTree. FCL_ARTIC_DATA names the folder with robots/ and problems/.
 //
 // Clutter leaves a motion its way: obstacles that come within 5 mm of it are left out, so that each motion has a scene
 // of its own. The other scenes are drawn once; motions are drawn until enough of them are free.
@@ -12,15 +13,16 @@
 #include <memory>
 #include <set>
 
+#include <fcl/geometry/octree/octree.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fmt/format.h>
 
 #include "arm_scene.h"
+#include "fcl_artic/point_cloud.h"
 #include "options.h"
 #include "planning/problems.h"
-#include "plot.h"
 #include "random_motion.h"
 
 using namespace fcl_artic;
@@ -32,6 +34,7 @@ namespace {
 constexpr Answer kFree = 2;
 constexpr double kLength = 2.7, kReach = 1.2, kShoulder = 0.333, kWay = 5e-3;
 constexpr double kNearBase = 0.25;  ///< obstacles of shared scenes keep clear of the base
+constexpr double kPoint = 3e-3;     ///< radius of a cloud's points
 
 using Geometry = std::shared_ptr<fcl::CollisionGeometryd>;
 struct Obstacle {
@@ -95,6 +98,36 @@ Obstacle randomObstacle(Random& random, double size, const Eigen::Vector3d& at) 
   const Eigen::Vector3d axis = inBall(random, 1).normalized();
   obstacle.pose = Eigen::Translation3d(at) * Eigen::AngleAxisd(random.uniform(-kPi, kPi), axis);
   return obstacle;
+}
+
+/// Points of 20 bumpy bodies, as a scanner sees them, each off by up to a third of its radius.
+std::vector<Eigen::Vector3d> scan(std::size_t n, Random& random) {
+  std::vector<TriangleMesh> meshes;
+  while (meshes.size() < 20) {
+    BumpyEllipsoid body;
+    const double x = random.uniform(-0.9, 0.9), y = random.uniform(-0.9, 0.9), z = random.uniform(-0.2, 1.1);
+    body.centre = Eigen::Vector3d(x, y, z);
+    body.half.setConstant(random.uniform(0.05, 0.12));
+    if (body.centre.head<2>().norm() > 0.3) meshes.push_back(body.mesh(80, 40));
+  }
+  const TriangleMesh all = merge(meshes);
+  std::vector<Eigen::Vector3d> points;
+  while (points.size() < n) {
+    const auto& t = all.triangles[static_cast<std::size_t>(random.index(static_cast<int>(all.triangles.size())))];
+    double u = random.uniform(0, 1), v = random.uniform(0, 1);
+    if (u + v > 1) u = 1 - u, v = 1 - v;
+    const Eigen::Vector3d a = all.vertices[t[0]], b = all.vertices[t[1]], c = all.vertices[t[2]];
+    const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
+    points.push_back(a + u * (b - a) + v * (c - a) + kPoint / 3 * Eigen::Vector3d(x, y, z));
+  }
+  return points;
+}
+
+std::shared_ptr<fcl::OcTreed> cellsOf(const std::vector<Eigen::Vector3d>& points) {
+  const auto tree = std::make_shared<octomap::OcTree>(2 * kPoint);
+  for (const Eigen::Vector3d& p : points) tree->updateNode(p[0], p[1], p[2], true, true);
+  tree->updateInnerOccupancy();
+  return std::make_shared<fcl::OcTreed>(std::shared_ptr<const octomap::OcTree>(tree));
 }
 
 class Bench {
@@ -171,6 +204,26 @@ class Bench {
     }
   }
 
+  /// 400 motions of up to 0.35 rad a joint from free starts: first contacts of those that are free and of the others.
+  void addPoints(const std::vector<std::size_t>& sizes) {
+    for (const std::size_t size : sizes) {
+      for (const bool as_cells : {false, true}) {
+        for (const bool hit : {false, true}) {
+          report_.add(as_cells ? "OcTree" : "points", hit ? "hit" : "free", fmt::format("{} points", size),
+                      [this, size, as_cells, hit] {
+                        Random random(1);
+                        const auto cloud = std::make_shared<PointCloud>(scan(size, random), kPoint);
+                        const World points(robot_, {{cloud}});
+                        const std::vector<JointMotion> motions = shortMotions(points.manager(), hit, random);
+                        if (!as_cells) return measuredIn(points, static_cast<double>(size), motions);
+                        return measuredIn(World(robot_, {{cellsOf(cloud->points())}}), static_cast<double>(size),
+                                          motions);
+                      });
+        }
+      }
+    }
+  }
+
   /// How much more the larger of two sizes costs than the smaller.
   void noteRatio(const std::string& scene, double small, double large) {
     const Row *a = nullptr, *b = nullptr;
@@ -202,6 +255,24 @@ class Bench {
       JointMotion motion = randomMotion(random);
       manager.continuousCollide(motion, planned(), result);
       if (result.isFree()) motions.push_back(std::move(motion));
+    }
+    return motions;
+  }
+
+  std::vector<JointMotion> shortMotions(const ArticulatedCollisionManager& manager, bool hit, Random& random) const {
+    constexpr int kDrawn = 400;
+    const KinematicTree& tree = *robot_.tree;
+    std::vector<JointMotion> motions;
+    for (int drawn = 0; drawn < kDrawn;) {
+      Eigen::VectorXd q0(tree.dof()), q1(tree.dof());
+      for (int v = 0; v < tree.dof(); ++v) {
+        const Joint& joint = tree.joint(tree.variableJoint(v));
+        q0[v] = random.uniform(joint.lower, joint.upper);
+        q1[v] = std::clamp(q0[v] + random.uniform(-0.35, 0.35), joint.lower, joint.upper);
+      }
+      if (!manager.isFree(q0, q0)) continue;
+      ++drawn;
+      if (manager.isFree(q0, q1) != hit) motions.push_back(JointMotion::linear(tree, q0, q1));
     }
     return motions;
   }
@@ -239,9 +310,15 @@ class Bench {
                     [&](std::size_t) -> const ArticulatedCollisionManager& { return world.manager(); });
   }
 
+  Measured measuredIn(const World& world, double size, const std::vector<JointMotion>& motions) const {
+    return measured(
+        size, motions, [&](std::size_t) -> const ArticulatedCollisionManager& { return world.manager(); },
+        CertifiedRequest());
+  }
+
   template <class ManagerOf>
-  Measured measured(double size, const std::vector<JointMotion>& motions, const ManagerOf& manager) const {
-    const CertifiedRequest request = planned();
+  Measured measured(double size, const std::vector<JointMotion>& motions, const ManagerOf& manager,
+                    const CertifiedRequest& request = planned()) const {
     CertifiedResult result;
     Measured measured = measure(motions.size(), passes_, [&](std::size_t i) {
       manager(i).continuousCollide(motions[i], request, result);
@@ -264,23 +341,6 @@ class Bench {
   std::vector<std::vector<Obstacle>> clutter_;
 };
 
-std::string plotOf(const std::vector<Row>& rows, const std::vector<std::string>& scenes, const std::string& title,
-                   const std::string& label) {
-  std::vector<Series> series;
-  for (const std::string& scene : scenes) {
-    Series median{scene + ", median", {}}, mean{scene + ", mean", {}};
-    for (const Row& row : rows) {
-      if (row.scene != scene) continue;
-      median.points.emplace_back(row.size, row.median_us);
-      mean.points.emplace_back(row.size, row.mean_us);
-    }
-    if (median.points.empty()) continue;
-    series.push_back(std::move(median));
-    series.push_back(std::move(mean));
-  }
-  return logLogPlot(title, label, "us per free motion", series);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -288,13 +348,15 @@ int main(int argc, char** argv) try {
   CLI::App app("A Panda's free motions in growing scenes (FCL_ARTIC_DATA names the data)");
   std::size_t queries = 50;
   int passes = 3;
-  std::vector<std::size_t> obstacles = {10, 20, 100, 1000, 10000}, triangles = {1000, 10000, 100000, 1000000};
+  std::vector<std::size_t> obstacles = {10, 20, 100, 1000, 10000}, triangles = {1000, 10000, 100000, 1000000},
+                           points = {10000, 100000, 1000000};
   app.add_option("--queries", queries, "free motions of each scene")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--passes", passes, "passes over the motions; the least time of each counts")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--obstacles", obstacles, "numbers of obstacles")->capture_default_str();
   app.add_option("--triangles", triangles, "sizes of the mesh scenes")->capture_default_str();
+  app.add_option("--points", points, "sizes of clouds")->capture_default_str();
   if (const auto status = readOptions(app, report, argc, argv)) return *status;
   const std::filesystem::path data = planning_data::sharedData();
   if (data.empty()) {
@@ -305,18 +367,9 @@ int main(int argc, char** argv) try {
   bench.addClutter(obstacles);
   bench.addRoom(obstacles);
   bench.addMeshes(triangles);
+  bench.addPoints(points);
   report.run();
   for (const char* scene : {"clutter", "room"}) bench.noteRatio(scene, 20, 1000);
-  std::string csv = "scene,size,queries,hits,median_us,mean_us,p95_us\n";
-  for (const Row& r : report.rows()) {
-    csv += fmt::format("{},{:g},{},{},{:.3f},{:.3f},{:.3f}\n", r.scene, r.size, r.queries, r.hits, r.median_us,
-                       r.mean_us, r.p95_us);
-  }
-  report.write("bench_scenes.csv", csv);
-  report.write("bench_scenes_obstacles.svg",
-               plotOf(report.rows(), {"clutter", "room"}, "Panda, free motions of 2.7 rad", "obstacles"));
-  report.write("bench_scenes_triangles.svg", plotOf(report.rows(), {"20 meshes", "one mesh"},
-                                                    "Panda, free motions of 2.7 rad", "triangles of the scene"));
   return report.finish();
 } catch (const std::exception& error) {
   std::cerr << "bench_scenes: " << error.what() << '\n';

@@ -272,58 +272,6 @@ double median(std::vector<double> all) {
   return all[all.size() / 2];
 }
 
-/// Red where the stage costs, green where it saves; the number is the time with it as a multiple of that without.
-std::string colourOf(double ratio) {
-  const double x = std::clamp(std::log2(ratio) / 3, -1.0, 1.0);  // eight times as much is as red as it gets
-  const int red = static_cast<int>(x > 0 ? 255 : 255 * (1 + x)), green = static_cast<int>(x < 0 ? 255 : 255 * (1 - x));
-  return fmt::format("#{:02x}{:02x}{:02x}", std::max(red, 90), std::max(green, 90), 110);
-}
-
-/// A row for each way, scene by scene; a column for each set and step.
-std::string mapOf(const std::vector<Cell>& cells) {
-  std::vector<std::string> rows, columns;
-  std::map<std::pair<std::string, std::string>, double> values;
-  const auto add = [](std::vector<std::string>& names, const std::string& name) {
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  };
-  for (const Cell& c : cells) {
-    const std::string row = fmt::format("{}, {:.0e} triangles, {} links: {} {}{}", c.scene,
-                                        static_cast<double>(c.triangles), c.links, c.way.executor, nameOf(c.way.mode),
-                                        c.way.batch > 1 ? fmt::format(", {} at a time", c.way.batch) : "");
-    const std::string column = fmt::format("{} {:g}°", c.set, c.degrees);
-    add(rows, row);
-    add(columns, column);
-    values[{row, column}] = c.ratio;
-  }
-  constexpr int kLeft = 460, kTop = 60, kWidth = 74, kHeight = 17;
-  const int width = kLeft + kWidth * static_cast<int>(columns.size()) + 20,
-            height = kTop + kHeight * static_cast<int>(rows.size()) + 20;
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" "
-      "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n"
-      "<text x=\"10\" y=\"20\">Time of a query with stage 2, as a multiple of that without it. Below 1 (green) it pays."
-      "</text>\n",
-      width, height);
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
-                       kLeft + kWidth * static_cast<int>(k) + kWidth / 2, kTop - 8, columns[k]);
-  }
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const int y = kTop + kHeight * static_cast<int>(r);
-    svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\n", kLeft - 8, y + 13, rows[r]);
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      const auto found = values.find({rows[r], columns[k]});
-      if (found == values.end()) continue;
-      const int x = kLeft + kWidth * static_cast<int>(k);
-      svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>\n", x + 1, y + 1, kWidth - 2,
-                         kHeight - 2, colourOf(found->second));
-      svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{:.2f}</text>\n", x + kWidth / 2, y + 13,
-                         found->second);
-    }
-  }
-  return svg + "</svg>\n";
-}
-
 std::string csvOf(const std::vector<Cell>& cells) {
   std::string csv = "scene,triangles,links,degrees,set,executor,mode,batch,queries,off_us,with_us,ratio,culled,drawn\n";
   for (const Cell& c : cells) {
@@ -446,7 +394,6 @@ int main(int argc, char** argv) {
     }
   }
   report.write(name + ".csv", csvOf(cells));
-  report.write(name + ".svg", mapOf(cells));
   if (differ) fmt::print("{} verdicts differ\n", differ);
   return differ ? 1 : 0;
 }

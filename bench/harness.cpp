@@ -17,7 +17,6 @@
 #include <benchmark/benchmark.h>
 #include <fcl/config.h>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "files/files.h"
 
@@ -49,16 +48,6 @@ double quantile(const std::vector<double>& sorted, double q) {
   return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(q * static_cast<double>(sorted.size())))];
 }
 
-nlohmann::json toJson(const Row& row) {
-  nlohmann::json per_query = nlohmann::json::object();
-  for (const auto& [name, value] : row.per_query) per_query[name] = value;
-  return {{"scene", row.scene},         {"set", row.set},           {"method", row.method},
-          {"queries", row.queries},     {"hits", row.hits},         {"passes", row.passes},
-          {"median_us", row.median_us}, {"mean_us", row.mean_us},   {"p95_us", row.p95_us},
-          {"max_us", row.max_us},       {"mean_toc", row.mean_toc}, {"answers", fmt::format("{:016x}", row.hash)},
-          {"per_query", per_query}};
-}
-
 /// One minute's load average: what else ran on the machine.
 std::string load() {
   std::ifstream in("/proc/loadavg");
@@ -67,13 +56,10 @@ std::string load() {
   return one_minute;
 }
 
-nlohmann::json circumstances() {
-  return {{"machine", machineName()},
-          {"cpu", cpuField("model name")},
-          {"compiler", "g++ " __VERSION__},
-          {"flags", BENCH_FLAGS},
-          {"fcl", FCL_VERSION},
-          {"load", load()}};
+/// Processor, compiler and flags of a program's rows.
+std::string circumstances() {
+  return fmt::format("{}; g++ {}; {}; FCL {}; load average {}", cpuField("model name"), __VERSION__, BENCH_FLAGS,
+                     FCL_VERSION, load());
 }
 
 }  // namespace
@@ -179,11 +165,7 @@ void Report::add(const std::string& scene, const std::string& set, const std::st
 }
 
 std::string Report::table() const {
-  const auto about = circumstances();
-  std::string out =
-      fmt::format("{}\n{}; {}; {}; FCL {}; load average {}\n\n", program_, about["cpu"].get<std::string>(),
-                  about["compiler"].get<std::string>(), about["flags"].get<std::string>(),
-                  about["fcl"].get<std::string>(), about["load"].get<std::string>());
+  std::string out = fmt::format("{}\n{}\n\n", program_, circumstances());
   out += fmt::format("{:<18} {:<6} {:<30} {:>7} {:>5} {:>11} {:>11} {:>11} {:>9} {:>16}\n", "scene", "set", "method",
                      "queries", "hits", "median us", "mean us", "p95 us", "mean toc", "answers");
   for (const Row& r : rows_) {
@@ -205,14 +187,7 @@ void Report::run() {
 
 int Report::finish() const {
   std::cout << '\n' << table();
-  if (!rows_.empty()) {
-    nlohmann::json all = circumstances();
-    all["rows"] = nlohmann::json::array();
-    for (const Row& row : rows_) all["rows"].push_back(toJson(row));
-    all["notes"] = notes_;
-    write(program_ + ".json", all.dump(1) + '\n');
-    write(program_ + ".txt", table());
-  }
+  if (!rows_.empty()) write(program_ + ".txt", table());
   files::flushStandardOutput();
   return failed_ ? 1 : 0;
 }

@@ -60,7 +60,7 @@ class Report {
   void add(const std::string& scene, const std::string& set, const std::string& method, std::function<Measured()> run);
   /// Runs what the filter leaves.
   void run();
-  /// Prints the table and, with --results, writes PROGRAM.json and PROGRAM.txt.
+  /// Prints the table and, with --results, writes PROGRAM.txt.
   /// @return exit status: 1 when a row failed or a file can't be written.
   int finish() const;
   /// Writes one more file of results, beside the others; nothing without --results.

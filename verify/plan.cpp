@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "readers.h"
+#include "report.h"
 #include "xml.h"
 
 namespace verify {
@@ -155,7 +156,7 @@ class PlanComparison {
   void count() {
     const std::size_t pieces = motion_.pieces.size(), all = plan_.rows.size() - 1;
     if (pieces > all)
-      different("the motion has " + std::to_string(pieces) + " pieces, the plan " + std::to_string(all));
+      different("the motion has " + counted(pieces, "piece") + ", the plan " + std::to_string(all));
     else if (pieces < all && motion_.until >= 1)
       different("the motion ends at waypoint " + std::to_string(pieces) + " of " + std::to_string(all));
   }
@@ -398,8 +399,8 @@ std::map<std::string, double> readConfiguration(const World& world, const std::v
   const std::vector<std::string> words = wordsOf(text, ", \t\r\n");
   const bool named = !words.empty() && words[0].find('=') != std::string::npos;
   if (!named && words.size() != order.size())
-    throw BadInput("'" + text + "' has " + std::to_string(words.size()) + " values for " +
-                   std::to_string(order.size()) + " variables");
+    throw BadInput("'" + text + "' has " + counted(words.size(), "value") + " for " +
+                   counted(order.size(), "variable"));
   for (std::size_t k = 0; k < words.size(); ++k) {
     const std::size_t equals = words[k].find('=');
     if ((equals != std::string::npos) != named)

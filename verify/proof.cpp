@@ -85,8 +85,8 @@ class Walk {
 
   /// Where the walk was last, for people.
   std::string where() const {
-    const std::string others =
-        at_.q - at_.p > 1 ? " and " + std::to_string(at_.q - at_.p - 1) + " bodies after it" : "";
+    const std::string more = at_.q - at_.p == 2 ? " body after it" : " bodies after it",
+                      others = at_.q - at_.p > 1 ? " and " + std::to_string(at_.q - at_.p - 1) + more : "";
     return ": " + world_.describe(a_) + " and " + world_.describe(partners_[at_.p].body) + others + ", time [" +
            shown(at_.span.a) + ", " + shown(at_.span.b) + "] of piece " + std::to_string(piece_);
   }

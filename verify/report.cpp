@@ -46,17 +46,21 @@ std::string startOrGoal(const World& world, const Piece& piece, const double* un
 
 }  // namespace
 
+std::string counted(std::size_t n, const std::string& one, const std::string& many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many.empty() ? one + "s" : many);
+}
+
 std::vector<std::string> linesOf(const World& world) {
   std::vector<std::string> lines;
   for (const Role role : {Role::link, Role::carried, Role::obstacle}) {
     std::map<std::string, int> names;
-    int count = 0;
+    std::size_t count = 0;
     for (const Body& body : world.bodies)
       if (body.role == role) ++names[body.name], ++count;
     std::vector<std::string> items;
     for (const auto& [name, n] : names)
       items.push_back(inQuotes(name) + (n > 1 ? " (" + std::to_string(n) + " bodies)" : ""));
-    addList(lines, std::to_string(count) + (count == 1 ? " body" : " bodies") + " of role " + nameOf(role), items);
+    addList(lines, counted(count, "body", "bodies") + " of role " + nameOf(role), items);
   }
   for (std::size_t b = 0; b < world.bodies.size(); ++b) {
     const Body& body = world.bodies[b];

@@ -10,6 +10,9 @@
 
 namespace verify {
 
+/// "1 link", "2 links". @param many  of a noun that does not end in s when there are several of it.
+std::string counted(std::size_t n, const std::string& one, const std::string& many = {});
+
 /// The statements of the world beside its numbers, one line each: whose bodies, which of them move with a link, which
 /// pairs are not checked, margins.
 std::vector<std::string> linesOf(const World& world);

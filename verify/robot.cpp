@@ -48,10 +48,12 @@ void Robot::requireTree() {
     ++roots;
   }
   if (roots != 1) throw BadInput("URDF: there are " + std::to_string(roots) + " root links");
+  std::set<std::string> on_root{root};
   for (const Link& link : links) {
-    std::size_t steps = 0;
-    for (const Joint* j = jointAbove(link.name); j != nullptr; j = jointAbove(j->parent))
-      if (++steps > joints.size()) throw BadInput("URDF: link " + inQuotes(link.name) + " hangs on itself in the end");
+    std::set<std::string> way;  // up to one that is known to hang on the root
+    for (std::string name = link.name; on_root.count(name) == 0; name = jointAbove(name)->parent)
+      if (!way.insert(name).second) throw BadInput("URDF: link " + inQuotes(link.name) + " hangs on itself in the end");
+    on_root.merge(way);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "readers.h"
+#include "report.h"
 #include "shapes.h"
 
 namespace verify {
@@ -110,15 +111,14 @@ class SceneComparison {
   SceneComparison(const World& world, const Solids& solids, double scale)
       : world_(world), scale_(scale), shapes_(world, solids, scale) {
     for (std::size_t b = 0; b < world.bodies.size(); ++b)
-      if (world.bodies[b].role == Role::obstacle) bodies_[baseOf(world.bodies[b].name)].push_back(static_cast<int>(b));
+      if (world.bodies[b].role == Role::obstacle) bodies_[baseOf(world.bodies[b].name)].insert(static_cast<int>(b));
   }
 
   Comparison run(const std::vector<Obstacle>& obstacles) {
     for (const Obstacle& o : obstacles) find(o);
     for (const auto& [name, bodies] : bodies_)
-      for (const int b : bodies)
-        if (used_.count(b) == 0) result_.differences.push_back(world_.describe(b) + " is in no scene");
-    result_.notes.push_back("the scene has " + std::to_string(obstacles.size()) + " obstacles" +
+      for (const int b : bodies) result_.differences.push_back(world_.describe(b) + " is in no scene");
+    result_.notes.push_back("the scene has " + counted(obstacles.size(), "obstacle") +
                             (result_.differences.empty() ? ", as the world has" : ""));
     if (rounded_ > 0)
       result_.notes.push_back(std::to_string(rounded_) +
@@ -131,13 +131,12 @@ class SceneComparison {
  private:
   void find(const Obstacle& o) {
     std::string why;
-    const auto found = bodies_.find(baseOf(o.name));
-    for (std::size_t k = 0; found != bodies_.end() && k < found->second.size(); ++k) {
-      const int b = found->second[k];
-      if (used_.count(b) > 0 || !isCalled(world_.bodies[static_cast<std::size_t>(b)].name, o.name)) continue;
+    std::set<int>& open = bodies_[baseOf(o.name)];
+    for (const int b : open) {
+      if (!isCalled(world_.bodies[static_cast<std::size_t>(b)].name, o.name)) continue;
       if (++pairs_ > 2000000) throw BadInput("the scene has too many obstacles of one name: not compared");
       if (isObstacle(o, b)) {
-        used_.insert(b);
+        open.erase(b);
         rounded_ += o.at.empty();
         return;
       }
@@ -171,8 +170,7 @@ class SceneComparison {
   const World& world_;
   const double scale_;
   ShapeComparison shapes_;
-  std::map<std::string, std::vector<int>> bodies_;  // of role obstacle, by name without numbers
-  std::set<int> used_;
+  std::map<std::string, std::set<int>> bodies_;  // of role obstacle that no file has yet, by name without numbers
   std::size_t pairs_ = 0, rounded_ = 0;
   Comparison result_;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shapes.h"
 
+#include "report.h"
+
 namespace verify {
 
 bool ShapeComparison::same(const Collision& shape, const std::set<std::string>& names, int body) {
@@ -35,12 +37,11 @@ bool ShapeComparison::same(const Collision& shape, const std::set<std::string>& 
 void ShapeComparison::note(const std::string& whose, Comparison& comparison) const {
   comparison.solids = solids_found_;
   for (const auto& [path, count] : left_out_)
-    comparison.notes.push_back("'" + path + "': " + std::to_string(count) +
-                               " triangles without area are not in the world, which lie on edges of others");
+    comparison.notes.push_back("'" + path + "': " + counted(count, "triangle") +
+                               " without area, on edges of others, left out of the world");
   if (surfaces_ + solid_meshes_ > 0)
-    comparison.notes.push_back(std::to_string(surfaces_) + " meshes of " + whose +
-                               " are surfaces, of which what lies inside is not checked, and " +
-                               std::to_string(solid_meshes_) + " are solids");
+    comparison.notes.push_back("meshes of " + whose + ": " + counted(surfaces_, "surface") +
+                               ", of which what lies inside is not checked, and " + counted(solid_meshes_, "solid"));
 }
 
 }  // namespace verify

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "readers.h"
+#include "report.h"
 #include "xml.h"
 
 namespace verify {
@@ -60,7 +61,7 @@ Comparison compareWithSrdf(const World& world, const std::string& path) {
           (reason == Reason::allowed ? " to touch, the SRDF does not" : ", which the SRDF does not disable"));
     }
   }
-  result.notes.push_back(std::to_string(found) + " pairs of names that the world does not check are in the SRDF");
+  result.notes.push_back("in the SRDF, and not checked by the world: " + counted(found, "pair") + " of names");
   return result;
 }
 

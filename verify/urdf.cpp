@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "readers.h"
+#include "report.h"
 #include "robot.h"
 #include "shapes.h"
 
@@ -89,9 +90,9 @@ class UrdfComparison {
     for (const Link& l : robot_.links) link(l);
     nothingLeft();
     root();
-    result_.notes.push_back("the file has " + std::to_string(robot_.links.size()) + " links, " +
-                            std::to_string(robot_.joints.size()) + " joints and " + std::to_string(matched_) +
-                            " collision geometries, as the world has");
+    result_.notes.push_back("the file has " + counted(robot_.links.size(), "link") + ", " +
+                            counted(robot_.joints.size(), "joint") + " and " +
+                            counted(matched_, "collision geometry", "collision geometries") + ", as the world has");
     shapes_.note("links", result_);
     return std::move(result_);
   }

@@ -22,12 +22,11 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "angles.h"
 #include "bench/bars.h"
-#include "bench/step_bench.h"
 #include "elapsed.h"
 #include "exit_status.h"
 #include "files/files.h"
+#include "kinematics/angles.h"
 #include "outputs.h"
 #include "planning/fcl_state_check.h"
 #include "progress.h"

@@ -26,8 +26,8 @@
 #include "exit_status.h"
 #include "fcl_artic/certificate.h"
 #include "files/files.h"
+#include "outputs.h"
 #include "report/request_json.h"
-#include "text/one_line.h"
 #include "threads/parallel.h"
 
 namespace fcl_artic::app {
@@ -179,7 +179,7 @@ class Stage {
     constexpr std::size_t kMaxTold = 50;
     for (const std::string& note : notes) {
       if (!speaks_ || !told_.insert(note).second || ++num_told_ > kMaxTold) continue;
-      fmt::print(stderr, "fcl_artic: note: scene {} ('{}'): {}\n", scene, scenes_.name(scene), text::oneLine(note));
+      printNotes({note}, fmt::format("scene {} ('{}')", scene, scenes_.name(scene)));
       if (num_told_ == kMaxTold) fmt::print(stderr, "fcl_artic: note: notes of further scenes are not printed\n");
     }
   }
@@ -301,8 +301,8 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
   const bool speaks = ranks.rank() == 0 && !o.quiet;
   Stage stage(world, scenes, !o.quiet);
   if (speaks) {
-    for (const std::string& note : world.notes(stage.manager())) fmt::print(stderr, "fcl_artic: note: {}\n", note);
-    for (const std::string& note : scenes.notes()) fmt::print(stderr, "fcl_artic: note: {}\n", note);
+    printNotes(world.notes(stage.manager()));
+    printNotes(scenes.notes());
   }
   const int threads = o.threads == 0 && ranks.size() > 1 ? 1 : o.threads;
   Answerer answerer(stage, edges, o, *folder, threads);

@@ -58,7 +58,6 @@ class EdgeSource {
  private:
   enum class Kind { ends, numbers, waypoints };
   using Table = std::vector<double>;
-  std::size_t requireTable(const std::string& dataset);
   void readColumns(const std::string& dataset);
   std::string hashAll() const;
   Eigen::VectorXd configuration(const double* row) const;

@@ -6,24 +6,6 @@
 #include "query/request_options.h"
 
 namespace fcl_artic::app {
-namespace {
-
-const char* nameOf(ContactMode mode) {
-  switch (mode) {
-    case ContactMode::first:
-      return "first";
-    case ContactMode::any:
-      return "any";
-    case ContactMode::firstOfEveryPair:
-      return "first_of_every_pair";
-  }
-  return "";
-}
-const char* nameOf(Method method) {
-  return method == Method::standard ? "standard" : "redon2004";
-}
-
-}  // namespace
 
 nlohmann::ordered_json requestJson(const CertifiedRequest& request) {
   nlohmann::ordered_json out;

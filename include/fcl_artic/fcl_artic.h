@@ -19,6 +19,7 @@
 #include "fcl_artic/manager.h"
 #include "fcl_artic/pair_result.h"
 #include "fcl_artic/point_cloud.h"
+#include "fcl_artic/query_text.h"
 #include "fcl_artic/redon2004.h"
 #include "fcl_artic/references.h"
 #include "fcl_artic/request.h"

@@ -114,6 +114,7 @@ class FCL_ARTIC_EXPORT JointMotion {
   const Eigen::VectorXd& references() const { return references_; }
 
  private:
+  friend struct ExactMotion;  ///< makes a motion of these numbers again
   JointMotion(const KinematicTree& tree, Eigen::MatrixXd coefficients);
   void goByHalfAngles(const KinematicTree& tree, const Eigen::VectorXd& reference);
   [[noreturn]] void refuse(const KinematicTree& tree, const char* what) const;

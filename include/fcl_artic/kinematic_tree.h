@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -165,6 +167,10 @@ class FCL_ARTIC_EXPORT KinematicTree {
   ///   - a master that is unknown, fixed or has more than one variable,
   ///   - a multiplier or offset that is not finite.
   JointId addJoint(const Joint& joint);
+  /// Adds joints as addJoint() does, one after the other. Use it for trees of thousands of links: the order of the
+  /// links is found once, not after each joint. The tree is unchanged if this throws.
+  /// @throws std::invalid_argument as addJoint().
+  void addJoints(const std::vector<Joint>& joints);
 
   /// The robot's name.
   const std::string& name() const { return name_; }
@@ -218,7 +224,11 @@ class FCL_ARTIC_EXPORT KinematicTree {
   /// @throws std::out_of_range naming the joint and the robot.
   JointId jointId(std::string_view name) const;
   /// Whether there is a link of this name.
-  bool hasLink(std::string_view name) const { return findLink(name) >= 0; }
+  bool hasLink(std::string_view name) const { return index_.links.count(name) > 0; }
+  /// Index of the joint of this name; -1 if there is none.
+  JointId findJoint(std::string_view name) const;
+  /// Index of the variable of this name (variableName()); -1 if there is none.
+  int findVariable(std::string_view name) const;
 
   /// Fingerprint of what a motion in joint space depends on: the name and type of every joint that moves, and which
   /// joint it mimics how, in the order of addJoint(). Trees with the same one have the same joint variables and accept
@@ -270,7 +280,8 @@ class FCL_ARTIC_EXPORT KinematicTree {
   }
   [[noreturn]] void refuseIndex(const char* what, int index, std::size_t count) const;
   void requireSize(const Eigen::Ref<const Eigen::VectorXd>& q, const std::string& what) const;
-  int findLink(std::string_view name) const;
+  JointId append(const Joint& joint);
+  LinkId rootAbove(LinkId link);
   void sortLinks();
   void addToFingerprints(const Joint& joint);
   /// A turn of q about a joint's axis, seen from the parent link: along + across cos q + aside sin q.
@@ -287,11 +298,16 @@ class FCL_ARTIC_EXPORT KinematicTree {
   std::vector<JointId> parent_joint_;
   std::vector<Joint> joints_;
   std::vector<Turn> turns_;  ///< of each joint; used of revolute and continuous ones
-  std::vector<int> joint_parent_, joint_child_, joint_variable_;
+  std::vector<int> joint_parent_, joint_variable_;
   std::vector<JointId> with_quaternions_, mimics_;
   std::vector<JointId> variables_;
   std::vector<std::string> variable_names_;
   std::vector<LinkId> order_;  ///< topological
+  struct Index {
+    std::map<std::string, int, std::less<>> links, joints, variables;  ///< numbers by name
+    std::vector<LinkId> above;  ///< of each link one of those that carry it; a root's is itself
+  };
+  Index index_;
   Fingerprint joint_space_, content_;
 };
 

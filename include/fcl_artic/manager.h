@@ -354,6 +354,24 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// @throws std::invalid_argument, std::logic_error as for a motion.
   [[nodiscard]] Clearance clearance(const JointTrajectory& trajectory, const ClearanceRequest& request = {}) const;
 
+  /// Returns the query continuousCollide(motion, request) as text in JSON: robot, geometry, obstacles, allowed pairs,
+  /// margins, motion and request. readQuery() (fcl_artic/query_text.h) reads the text, also in another process, and the
+  /// query is answered with the same bits on processors with the same instructionSet(). The text leaves `progress` and
+  /// setVisibility() out.
+  /// @throws std::invalid_argument naming the object, for
+  ///   - an obstacle that moves as a BoundedMotion says,
+  ///   - an object that has changed since setup(),
+  ///   - a rotation or axis that would be rounded once more when it is read (one of 60,000),
+  ///   - a name that is not in UTF-8;
+  ///
+  ///   and if the motion is of other joint variables.
+  /// @throws std::logic_error as continuousCollide().
+  /// @throws std::runtime_error if the library was built without nlohmann-json.
+  [[nodiscard]] std::string writeQuery(const JointMotion& motion, const CertifiedRequest& request = {}) const;
+  /// Returns the query continuousCollide(trajectory, request) as text in JSON.
+  /// @throws as for a motion.
+  [[nodiscard]] std::string writeQuery(const JointTrajectory& trajectory, const CertifiedRequest& request = {}) const;
+
  private:
   struct Impl;
   struct QueryContext;

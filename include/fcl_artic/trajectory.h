@@ -122,6 +122,7 @@ class FCL_ARTIC_EXPORT JointTrajectory {
   void requireOf(const KinematicTree& tree) const;
 
  private:
+  friend struct ExactMotion;  ///< makes a trajectory of these pieces again
   JointTrajectory(const KinematicTree& tree, std::vector<double> times, std::vector<JointMotion> pieces);
   std::vector<double> times_;
   std::vector<JointMotion> pieces_;

@@ -898,6 +898,55 @@ class World:
         progress: _Progress | None = ...,
     ) -> Result: ...
     @overload
+    def dump(
+        self,
+        path: _Path,
+        q0: npt.ArrayLike,
+        q1: npt.ArrayLike,
+        *,
+        request: Request | None = ...,
+        mode: ContactMode | str = ...,
+        max_contacts: int = ...,
+        tolerance_time: float = ...,
+        tolerance_distance: float = ...,
+        margin: float = ...,
+        added_margin: float = ...,
+        check_scene: bool = ...,
+        check_self: bool = ...,
+        ignore_initial_contact: bool = ...,
+        certificate: bool = ...,
+        visibility: VisibilityMode | str = ...,
+        method: Method | str = ...,
+        redon: RedonOptions = ...,
+        work_budget: int = ...,
+        measure_times: bool = ...,
+        progress: _Progress | None = ...,
+    ) -> None: ...
+    @overload
+    def dump(
+        self,
+        path: _Path,
+        q0: JointMotion | JointTrajectory,
+        *,
+        request: Request | None = ...,
+        mode: ContactMode | str = ...,
+        max_contacts: int = ...,
+        tolerance_time: float = ...,
+        tolerance_distance: float = ...,
+        margin: float = ...,
+        added_margin: float = ...,
+        check_scene: bool = ...,
+        check_self: bool = ...,
+        ignore_initial_contact: bool = ...,
+        certificate: bool = ...,
+        visibility: VisibilityMode | str = ...,
+        method: Method | str = ...,
+        redon: RedonOptions = ...,
+        work_budget: int = ...,
+        measure_times: bool = ...,
+        progress: _Progress | None = ...,
+    ) -> None: ...
+    @overload
     def is_free(
         self,
         q0: npt.ArrayLike,
@@ -1152,6 +1201,7 @@ def load_scene(
     packages: Mapping[str, _Path] | None = ...,
     import_meshes: bool = ...,
 ) -> Scene: ...
+def replay(path: _Path) -> Result: ...
 def load_mesh(
     path: _Path,
     *,

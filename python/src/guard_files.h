@@ -3,7 +3,9 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
+#include "files/files.h"
 #include "gil.h"
 #include "turns.h"
 
@@ -27,6 +29,16 @@ auto guardFiles(const std::string& path, Read&& read) {
       fileNotFound(message, path);
     }
     valueError(message);
+  }
+}
+
+/// Writes files that belong together. A file that cannot be written is an OSError. To be called with the GIL held.
+inline void writeFiles(const std::vector<files::File>& all) {
+  try {
+    files::writeTogether(all);
+  } catch (const std::runtime_error& problem) {
+    PyErr_SetString(PyExc_OSError, problem.what());
+    throw py::error_already_set();
   }
 }
 

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "fcl_artic/clearance.h"
-#include "files/files.h"
+#include "guard_files.h"
 
 namespace fcl_artic::python {
 namespace {
@@ -251,13 +251,8 @@ void bindCertificate(py::module_& module) {
           [](const Certificate& c, py::handle path) {
             if (!c) valueError("there is no proof: " + c.missing);
             const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
-            try {
-              const std::string record = c.record();  // names the world's hash
-              files::writeTogether({{file + ".world", *c.world}, {file, record}});
-            } catch (const std::runtime_error& problem) {
-              PyErr_SetString(PyExc_OSError, problem.what());
-              throw py::error_already_set();
-            }
+            const std::string record = c.record();  // names the world's hash
+            writeFiles({{file + ".world", *c.world}, {file, record}});
           },
           "Writes the proof, and what stands and moves beside it, PATH.world, for `fcl_artic_verify PATH.world PATH`.",
           py::arg("path"))

@@ -9,9 +9,12 @@
 #include "collected.h"
 #include "enums.h"
 #include "fcl_artic/visibility/offscreen.h"
+#include "guard_files.h"
 #include "link_pairs.h"
 #include "options.h"
+#include "replay/query_file.h"
 #include "robot.h"
+#include "text/counted.h"
 #include "text/nearest_name.h"
 #include "watch.h"
 
@@ -335,6 +338,26 @@ CertifiedResult collide(const World& world, py::handle q, const py::kwargs& opti
   return result;
 }
 
+void dump(const World& world, py::handle path, py::handle q0, py::handle q1, const py::kwargs& options) {
+  const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
+  const Request request = readRequest(options);
+  const Question question = questionOf(world, q0, q1);
+  const std::string text = world.manager().ask([&](const ArticulatedCollisionManager& manager) {
+    return std::visit([&](const auto& motion) { return manager.writeQuery(motion, request.request); }, question);
+  });
+  writeFiles({{file, text}});
+}
+
+CertifiedResult askAgain(py::handle path) {
+  const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
+  RecordedQuery query = guardFiles(file, [&] { return replay::readQueryFile(file); });
+  Watch watch;
+  query.request.progress = [&watch](double) { return watch.goOn(0); };
+  CertifiedResult result = guardFiles(file, [&] { return query.ask(); });
+  watch.finish();
+  return result;
+}
+
 Clearance clearance(const World& world, py::handle q0, py::handle q1, const py::kwargs& options) {
   py::object progress;
   ClearanceRequest request = readClearanceRequest(options, progress);
@@ -530,6 +553,11 @@ void bindQueries(py::class_<World>& world) {
       .def("collide", &collide,
            "Finds what touches at one configuration. (Obstacles that move do so all the same, over all of their time.)",
            py::arg("q"))
+      .def("dump", &dump,
+           "Writes the question that check(q0, q1) asks to a file, JSON with all that its answer depends on. replay()\n"
+           "and the program's check --replay ask it again, with the same bits: a report of a surprising answer should\n"
+           "have one.",
+           py::arg("path"), py::arg("q0"), py::arg("q1") = py::none())
       .def(
           "clearance", &clearance,
           "The smallest distance of any checked pair on the whole way, proven from below and from above. With\n"
@@ -557,6 +585,10 @@ void bindQueries(py::class_<World>& world) {
 }  // namespace
 
 void bindWorld(py::module_& module) {
+  module.def("replay", &askAgain,
+             "Asks the question of a file that World.dump() or the program's check --dump has written. The answer has\n"
+             "the same bits as the first one, on a processor with the same instruction_set().",
+             py::arg("path"));
   py::class_<World> world(
       module, "World", collected<World>(),
       "Robots and obstacles, ready to be asked. Threads may share it. The robot is copied: what is changed\n"
@@ -604,8 +636,9 @@ void bindWorld(py::module_& module) {
       .def("__repr__", [](const World& w) {
         std::size_t carried = 0;
         for (const World::Body& b : w.bodies()) carried += b.carrier >= 0;
-        return py::str("<World: robot {!r} with {} variables, {} obstacles, {} moving, {} attached>")
-            .format(w.tree()->name(), w.tree()->dof(), w.bodies().size() - carried, w.movers().size(), carried);
+        return py::str("<World: robot {!r} with {}, {}, {} moving, {} attached>")
+            .format(w.tree()->name(), text::counted(w.tree()->dof(), "variable"),
+                    text::counted(w.bodies().size() - carried, "obstacle"), w.movers().size(), carried);
       });
   bindChanges(world);
   bindQueries(world);

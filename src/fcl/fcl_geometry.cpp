@@ -36,14 +36,8 @@ namespace {
 using engine::Piece;
 using engine::PieceKind;
 
-/// A BVHModel without its bounding volumes.
 template <class S>
-struct Mesh {
-  const fcl::Vector3<S>* vertices;
-  const fcl::Triangle* triangles;
-  std::size_t num_vertices, num_triangles;
-  bool solid;
-};
+using Mesh = MeshArrays<S>;
 
 /// Whether a mesh is a SolidMesh. (Most are plain BVHModels: one comparison of types shows that.)
 template <class BV>
@@ -64,7 +58,8 @@ Mesh<typename BV::S> meshOf(const fcl::CollisionGeometry<typename BV::S>& geomet
           static_cast<std::size_t>(model.num_tris), isSolid<BV>(geometry)};
 }
 
-/// @return whether the geometry is one.
+}  // namespace
+
 template <class S>
 bool asMesh(const fcl::CollisionGeometry<S>& geometry, Mesh<S>& mesh) {
   switch (geometry.getNodeType()) {
@@ -88,6 +83,8 @@ bool asMesh(const fcl::CollisionGeometry<S>& geometry, Mesh<S>& mesh) {
       return false;
   }
 }
+
+namespace {
 
 template <class S>
 std::vector<Eigen::Vector3d> toDouble(const fcl::Vector3<S>* points, std::size_t n) {
@@ -536,6 +533,7 @@ RigidTransform requireRigid(const Eigen::Isometry3d& M, const std::string& what)
   return requireRigid(M, 1e-6, [&] { return what; });
 }
 
+template bool asMesh(const fcl::CollisionGeometry<double>&, MeshArrays<double>&);
 template std::shared_ptr<const ShapeTree> readGeometry(const fcl::CollisionGeometry<float>&);
 template std::shared_ptr<const ShapeTree> readGeometry(const fcl::CollisionGeometry<double>&);
 template std::shared_ptr<const ShapeTree> cachedGeometry(const fcl::CollisionGeometry<float>&);

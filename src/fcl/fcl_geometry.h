@@ -14,6 +14,7 @@
 
 #include <fcl/geometry/collision_geometry.h>
 #include <fcl/geometry/octree/octree.h>
+#include <fcl/math/triangle.h>
 
 #include "geometry/shape_tree.h"
 #include "numerics/rotation.h"
@@ -35,6 +36,19 @@ std::shared_ptr<const ShapeTree> readGeometry(const fcl::CollisionGeometry<S>& g
 template <class S>
 std::shared_ptr<const ShapeTree> cachedGeometry(const fcl::CollisionGeometry<S>& geometry);
 constexpr std::size_t kMeshCacheBytes = std::size_t{256} << 20;
+
+/// A BVHModel without its bounding volumes, as the caller holds it.
+template <class S>
+struct MeshArrays {
+  const fcl::Vector3<S>* vertices;
+  const fcl::Triangle* triangles;
+  std::size_t num_vertices, num_triangles;
+  bool solid;
+};
+/// @return whether the geometry is one.
+/// @throws std::invalid_argument where it is one without triangles.
+template <class S>
+bool asMesh(const fcl::CollisionGeometry<S>& geometry, MeshArrays<S>& mesh);
 
 /// All that readGeometry() reads of a geometry, copied, to see whether its owner has changed it in place:
 /// - its type,

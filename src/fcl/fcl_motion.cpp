@@ -14,6 +14,7 @@
 #include <fcl/math/motion/spline_motion.h>
 #include <fcl/math/motion/translation_motion.h>
 
+#include "fcl/recorded_motion.h"
 #include "numerics/constants.h"
 #include "numerics/rotation.h"
 #include "numerics/shown.h"
@@ -329,6 +330,7 @@ BodyMotion readMotion(const fcl::MotionBase<S>& motion) {
   if (type == typeid(fcl::SplineMotion<S>)) return readSpline(static_cast<const fcl::SplineMotion<S>&>(motion), name);
   if constexpr (std::is_same<S, double>::value) {
     if (type == typeid(FclLinkMotion)) return bodyMotion(static_cast<const FclLinkMotion&>(motion));
+    if (type == typeid(RecordedMotion)) return static_cast<const RecordedMotion&>(motion).motion();
   }
   if (const auto* bounded = dynamic_cast<const BoundedMotion*>(&motion)) return readBounded(*bounded, name);
   throw std::invalid_argument(spelled(name) +

@@ -122,10 +122,6 @@ std::vector<hsize_t> sizes(const std::vector<std::size_t>& shape) {
 
 }  // namespace
 
-bool available() {
-  return true;
-}
-
 struct File::Impl {
   std::string path;
   Handle file{H5I_INVALID_HID, H5Fclose};

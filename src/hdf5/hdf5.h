@@ -13,8 +13,7 @@
 
 namespace fcl_artic::hdf5 {
 
-/// Whether this build reads and writes HDF5. If not, every call below throws std::runtime_error saying so.
-bool available();
+// In a build without HDF5 every call throws std::runtime_error that says so.
 
 /// Types of numbers that are written.
 enum class Type { int8, int32, int64, float64 };

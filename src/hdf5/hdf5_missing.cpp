@@ -13,10 +13,6 @@ namespace {
 
 }  // namespace
 
-bool available() {
-  return false;
-}
-
 struct File::Impl {};
 File::File(const std::string&) {
   refuse();

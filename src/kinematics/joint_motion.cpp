@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "kinematics/angles.h"
+#include "kinematics/exact_motion.h"
 #include "kinematics/largest_joint_value.h"
 #include "kinematics/rotation_vector.h"
 #include "model/sweep.h"
@@ -17,6 +18,14 @@ namespace {
 
 Eigen::Quaterniond quaternionAt(const Eigen::Ref<const Eigen::VectorXd>& q, int v) {
   return Eigen::Quaterniond(Eigen::Vector4d(q.segment<4>(v))).normalized();
+}
+
+/// Adds the rows of an orientation.
+void addRowsOf(const Eigen::Quaterniond& orientation, std::vector<double>& rows) {
+  const Eigen::Matrix3d R = Rotation::within12Ulps(orientation.toRotationMatrix(), 1e-12).value();
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) rows.push_back(R(i, k));
+  }
 }
 
 /// Refuses values beyond 1e5. A mimic joint's multiple and offset may cancel, so the sum of their sizes counts.
@@ -79,13 +88,25 @@ JointMotion::JointMotion(const KinematicTree& tree, Eigen::MatrixXd coefficients
   for (const JointId j : tree.quaternionJoints()) {
     const int v = tree.quaternionVariable(j);
     const Eigen::Quaterniond start = quaternionAt(variables_.col(0), v);
-    const Eigen::Matrix3d R = Rotation::within12Ulps(start.toRotationMatrix(), 1e-12).value();
-    for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) orientations_.push_back(R(i, k));
-    }
+    addRowsOf(start, orientations_);
     starts_.push_back({v, {start.x(), start.y(), start.z(), start.w()}});
     variables_.block<4, 1>(v, 0).setZero();
   }
+}
+
+JointMotion ExactMotion::motion(const KinematicTree& tree, const Eigen::MatrixXd& coefficients,
+                                const Eigen::VectorXd& references) {
+  JointMotion motion = references.size() == 0 ? JointMotion::polynomial(tree, coefficients)
+                                              : JointMotion::tangentHalfAnglePolynomial(tree, coefficients, references);
+  motion.orientations_.clear();
+  for (JointMotion::Start& start : motion.starts_) {
+    const Eigen::Vector4d given = coefficients.block<4, 1>(start.row, 0);
+    // With u = 2^-52, in any rounding mode: a computed square is off by 4u, its root by 3u, a quotient by u more. So
+    // the length of a normalised quaternion is off by 4u, its square by 8u, and by 12u as computed.
+    if (std::abs(given.squaredNorm() - 1) <= 12 * 0x1p-52) Eigen::Vector4d::Map(start.quaternion) = given;
+    addRowsOf(Eigen::Quaterniond(Eigen::Vector4d(Eigen::Vector4d::Map(start.quaternion))), motion.orientations_);
+  }
+  return motion;
 }
 
 JointMotion JointMotion::linear(const KinematicTree& tree, const Eigen::VectorXd& q0, const Eigen::VectorXd& q1) {
@@ -200,7 +221,7 @@ void JointMotion::goByHalfAngles(const KinematicTree& tree, const Eigen::VectorX
 void JointMotion::requirePolynomial(const char* who) const {
   if (isPolynomial()) return;
   throw std::invalid_argument(std::string(who) + ": the motion's angles go by a tangent half-angle law, not by " +
-                              "polynomials of time");
+                              "polynomials of time; motions by linear() and polynomial() are taken");
 }
 
 void JointMotion::refuse(const KinematicTree& tree, const char* what) const {

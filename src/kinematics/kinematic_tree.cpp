@@ -12,6 +12,7 @@
 #include "numerics/constants.h"
 #include "numerics/rotation.h"
 #include "numerics/shown.h"
+#include "text/counted.h"
 #include "text/nearest_name.h"
 
 namespace fcl_artic {
@@ -33,6 +34,12 @@ std::vector<const char*> variableEndings(JointType type) {
     default:
       return {""};
   }
+}
+
+/// @return -1: there is none.
+int idOf(const std::map<std::string, int, std::less<>>& ids, std::string_view name) {
+  const auto it = ids.find(name);
+  return it == ids.end() ? -1 : it->second;
 }
 
 }  // namespace
@@ -88,43 +95,48 @@ int KinematicTree::numVariables(JointType type) {
   }
 }
 
-int KinematicTree::findLink(std::string_view name) const {
-  const auto it = std::find(link_names_.begin(), link_names_.end(), name);
-  return it == link_names_.end() ? -1 : static_cast<int>(it - link_names_.begin());
-}
-
 LinkId KinematicTree::addLink(const std::string& name) {
   if (name.empty()) throw std::invalid_argument("robot '" + name_ + "': a link has no name");
-  if (findLink(name) >= 0) throw std::invalid_argument("robot '" + name_ + "': two links are named '" + name + "'");
+  const LinkId id = numLinks();
+  if (!index_.links.emplace(name, id).second) {
+    throw std::invalid_argument("robot '" + name_ + "': two links are named '" + name + "'");
+  }
+  order_.insert(order_.begin() + (id - numJoints()), id);  // the last of the roots: each joint carries one other link
   link_names_.push_back(name);
   parent_joint_.push_back(-1);
+  index_.above.push_back(id);
   content_.add(name);
-  const auto carried = [&](LinkId link) { return parent_joint_[link] >= 0; };
-  order_.insert(std::find_if(order_.begin(), order_.end(), carried), numLinks() - 1);  // the last of the roots
-  return numLinks() - 1;
+  return id;
 }
 
 JointId KinematicTree::addJoint(const Joint& joint) {
+  const JointId id = append(joint);
+  sortLinks();
+  return id;
+}
+
+void KinematicTree::addJoints(const std::vector<Joint>& joints) {
+  KinematicTree grown = *this;
+  for (const Joint& joint : joints) grown.append(joint);
+  grown.sortLinks();
+  *this = std::move(grown);
+}
+
+/// Adds a joint, and leaves the order of the links as it is.
+JointId KinematicTree::append(const Joint& joint) {
   const auto refuse = [&](const std::string& reason) {
     throw std::invalid_argument("robot '" + name_ + "': joint '" + joint.name + "' " + reason);
   };
-  const auto findJoint = [&](const std::string& name) {
-    const auto it = std::find_if(joints_.begin(), joints_.end(), [&](const Joint& j) { return j.name == name; });
-    return it == joints_.end() ? -1 : static_cast<JointId>(it - joints_.begin());
-  };
-
   if (joint.name.empty()) refuse("has no name");
   if (findJoint(joint.name) >= 0) refuse("exists already");
-  const LinkId parent = findLink(joint.parent), child = findLink(joint.child);
+  const int parent = idOf(index_.links, joint.parent), child = idOf(index_.links, joint.child);
   if (parent < 0) refuse("has an unknown parent link '" + joint.parent + "'");
   if (child < 0) refuse("has an unknown child link '" + joint.child + "'");
   if (const JointId other = parentJoint(child); other >= 0) {
     refuse("would be a second parent of link '" + joint.child + "', which joint '" + joints_[other].name +
            "' carries already");
   }
-  for (LinkId link = parent; link >= 0; link = parentLink(link)) {
-    if (link == child) refuse("closes a loop at link '" + joint.child + "'");
-  }
+  if (rootAbove(parent) == child) refuse("closes a loop at link '" + joint.child + "'");
   const std::optional<Rotation> turn = Rotation::within12Ulps(joint.origin.linear(), kOriginDefect);
   if (!joint.origin.translation().allFinite() || !turn) refuse("has an origin that is no rigid transform");
   if (joint.origin.translation().cwiseAbs().maxCoeff() > kFarthest) refuse("has an origin more than 1e9 m away");
@@ -161,10 +173,9 @@ JointId KinematicTree::addJoint(const Joint& joint) {
   if (!joint.mimics) {
     for (const char* ending : variableEndings(joint.type)) {
       const std::string name = joint.name + ending;
-      const auto other = std::find(variable_names_.begin(), variable_names_.end(), name);
-      if (other == variable_names_.end()) continue;
-      refuse("would have the variable '" + name + "', which joint '" +
-             joints_[variables_[static_cast<std::size_t>(other - variable_names_.begin())]].name +
+      const int other = findVariable(name);
+      if (other < 0) continue;
+      refuse("would have the variable '" + name + "', which joint '" + joints_[variables_[other]].name +
              "' has already; call it otherwise");
     }
   }
@@ -176,18 +187,21 @@ JointId KinematicTree::addJoint(const Joint& joint) {
   if (has_axis) joints_.back().axis = *axis;
   turns_.emplace_back(joints_.back());
   joint_parent_.push_back(parent);
-  joint_child_.push_back(child);
   joint_variable_.push_back(variable);
   if (quaternionVariable(id) >= 0) with_quaternions_.push_back(id);
   if (joint.mimics) {
     mimics_.push_back(id);
   } else {
     variables_.insert(variables_.end(), static_cast<std::size_t>(numVariables(joint.type)), id);
-    for (const char* ending : variableEndings(joint.type)) variable_names_.push_back(joint.name + ending);
+    for (const char* ending : variableEndings(joint.type)) {
+      index_.variables.emplace(joint.name + ending, static_cast<int>(variable_names_.size()));
+      variable_names_.push_back(joint.name + ending);
+    }
   }
+  index_.joints.emplace(joint.name, id);
   parent_joint_[child] = id;
+  index_.above[child] = parent;
   addToFingerprints(joints_.back());
-  sortLinks();
   return id;
 }
 
@@ -250,8 +264,14 @@ LinkId KinematicTree::parentLink(LinkId link) const {
   return joint < 0 ? -1 : joint_parent_[joint];
 }
 
-/// Sorts links breadth first, from the roots on; roots, and the children of a link, by number. This runs after each
-/// joint that is added, also to robots of thousands of links, so nothing is allocated per link.
+/// Returns the root of the link's tree. Each call makes the way up half as long, so that joints in any order are added
+/// in n log n steps in all.
+LinkId KinematicTree::rootAbove(LinkId link) {
+  while (index_.above[link] != link) link = index_.above[link] = index_.above[index_.above[link]];
+  return link;
+}
+
+/// Sorts links breadth first, from the roots on; roots, and the children of a link, by number.
 void KinematicTree::sortLinks() {
   const std::size_t roots = link_names_.size();
   std::vector<LinkId> first(roots + 1, -1), next(roots, -1);  // of each link's children, and among its parent's
@@ -268,7 +288,7 @@ void KinematicTree::sortLinks() {
 }
 
 LinkId KinematicTree::linkId(std::string_view name) const {
-  const LinkId id = findLink(name);
+  const LinkId id = idOf(index_.links, name);
   if (id < 0) {
     throw std::out_of_range("robot '" + name_ + "' has no link '" + std::string(name) + "'" +
                             text::didYouMean(name, link_names_));
@@ -277,13 +297,19 @@ LinkId KinematicTree::linkId(std::string_view name) const {
 }
 
 JointId KinematicTree::jointId(std::string_view name) const {
-  for (JointId j = 0; j < numJoints(); ++j) {
-    if (joints_[j].name == name) return j;
-  }
+  if (const JointId id = findJoint(name); id >= 0) return id;
   std::vector<std::string> names;
   for (const Joint& joint : joints_) names.push_back(joint.name);
   throw std::out_of_range("robot '" + name_ + "' has no joint '" + std::string(name) + "'" +
                           text::didYouMean(name, names));
+}
+
+JointId KinematicTree::findJoint(std::string_view name) const {
+  return idOf(index_.joints, name);
+}
+
+int KinematicTree::findVariable(std::string_view name) const {
+  return idOf(index_.variables, name);
 }
 
 double KinematicTree::jointValue(JointId j, const Eigen::Ref<const Eigen::VectorXd>& q) const {
@@ -383,8 +409,8 @@ void KinematicTree::refuseIndex(const char* what, int index, std::size_t count) 
 
 void KinematicTree::requireSize(const Eigen::Ref<const Eigen::VectorXd>& q, const std::string& what) const {
   if (q.size() == dof()) return;
-  std::string message =
-      what + " has " + std::to_string(q.size()) + " entries, robot '" + name_ + "' has " + std::to_string(dof());
+  std::string message = what + " has " + text::counted(static_cast<std::size_t>(q.size()), "entry", "entries") +
+                        ", robot '" + name_ + "' has " + std::to_string(dof());
   if (dof() > 0) message += ": " + variableName(0) + (dof() > 1 ? " ... " + variableName(dof() - 1) : "");
   throw std::invalid_argument(message);
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "kinematics/angles.h"
+#include "kinematics/exact_motion.h"
 #include "kinematics/rotation_vector.h"
 #include "model/sweep.h"
 #include "numerics/shown.h"
@@ -146,6 +147,14 @@ JointMotion pieceOf(const KinematicTree& tree, MatrixXd coefficients, double dur
   }
 }
 
+void requirePieces(const std::vector<double>& times, std::size_t pieces) {
+  if (pieces == 0) throw std::invalid_argument("trajectory: no piece");
+  if (times.size() != pieces + 1) {
+    throw std::invalid_argument("trajectory: " + number(times.size()) + " times for " + number(pieces) +
+                                " pieces, not one more");
+  }
+}
+
 /// w' at the end of a turn by exp([w]) where the angular velocity is W: W = w' + b w x w' + c w x (w x w') solved for
 /// w', which is W - w x W / 2 + e w x (w x W), e = 1/g - (1 + cos) / (2 theta sin), g = theta^2 (Bullo and Murray
 /// 1995).
@@ -178,13 +187,15 @@ JointTrajectory::JointTrajectory(const KinematicTree& tree, std::vector<double> 
   }
 }
 
+JointTrajectory ExactMotion::trajectory(const KinematicTree& tree, const std::vector<double>& times,
+                                        std::vector<JointMotion> pieces) {
+  requirePieces(times, pieces.size());
+  return {tree, times, std::move(pieces)};
+}
+
 JointTrajectory JointTrajectory::piecewise(const KinematicTree& tree, const std::vector<double>& times,
                                            const std::vector<MatrixXd>& coefficients) {
-  if (coefficients.empty()) throw std::invalid_argument("trajectory: no piece");
-  if (times.size() != coefficients.size() + 1) {
-    throw std::invalid_argument("trajectory: " + number(times.size()) + " times for " + number(coefficients.size()) +
-                                " pieces, not one more");
-  }
+  requirePieces(times, coefficients.size());
   requireTimes(times);
   std::vector<JointMotion> pieces;
   for (std::size_t k = 0; k < coefficients.size(); ++k) {

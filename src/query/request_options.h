@@ -1,12 +1,50 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The options of a request, once: the program's options, Python's keywords with their docstrings, and JSON go by this
-// table.
+// table, and JSON by the names of their values.
 #pragma once
 
 #include "fcl_artic/request.h"
 
 namespace fcl_artic {
+
+/// A value of an enumeration as text.
+template <class E>
+struct NamedValue {
+  E value;
+  const char* name;
+};
+inline constexpr NamedValue<ContactMode> kContactModes[] = {
+    {ContactMode::first, "first"}, {ContactMode::any, "any"}, {ContactMode::firstOfEveryPair, "first_of_every_pair"}};
+inline constexpr NamedValue<Method> kMethods[] = {{Method::standard, "standard"}, {Method::redon2004, "redon2004"}};
+inline constexpr NamedValue<VisibilityMode> kVisibilityModes[] = {{VisibilityMode::off, "off"},
+                                                                  {VisibilityMode::on, "on"},
+                                                                  {VisibilityMode::automatic, "automatic"},
+                                                                  {VisibilityMode::atOnce, "at_once"}};
+inline constexpr NamedValue<MotionEnclosure> kMotionEnclosures[] = {{MotionEnclosure::intervalChain, "interval_chain"},
+                                                                    {MotionEnclosure::meanValue, "mean_value"},
+                                                                    {MotionEnclosure::taylor, "taylor"}};
+// Found by the type of their values.
+constexpr const auto& namesOf(ContactMode) {
+  return kContactModes;
+}
+constexpr const auto& namesOf(Method) {
+  return kMethods;
+}
+constexpr const auto& namesOf(VisibilityMode) {
+  return kVisibilityModes;
+}
+constexpr const auto& namesOf(MotionEnclosure) {
+  return kMotionEnclosures;
+}
+/// The name of one of these values.
+template <class E>
+const char* nameOf(E value) {
+  for (const NamedValue<E>& known : namesOf(E())) {
+    if (known.value == value) return known.name;
+  }
+  return "";
+}
 
 struct RequestOption {
   const char* name;     ///< in Python and in JSON

@@ -160,15 +160,6 @@ TEST_F(ProgramTest, PictureFollowsTheCamera) {
   EXPECT_NE(readPng(path("a.png")).rgb, readPng(path("c.png")).rgb);
 }
 
-TEST_F(ProgramTest, PictureOfATable1StepShowsTheContact) {
-  const std::string file = path("step.png");
-  const Outcome run = this->run(
-      "bench table1 --queries 1 --passes 1 --angles 30 --triangles 2000 --closeness 0.002 --executor none --image " +
-      file);
-  ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_GT(countPixels(readPng(file), isRed), 60u) << "the link that touches, and the contact's mark";
-}
-
 TEST_F(ProgramTest, UnwritablePictureIsAnError) {
   const Outcome run = this->run("check --robot " + arm() + " --from 0,0 --to 1,0 --size 64x64 --image /nowhere/x.png");
   EXPECT_EQ(run.status, 2);

@@ -33,17 +33,13 @@ TEST_F(ProgramTest, ContactIsOneAndTellsWhatAndWhere) {
 }
 
 TEST_F(ProgramTest, ThePapersMethodIsAskedForByName) {
-  const Outcome run =
-      this->run("check --json --method redon2004 --enclosure taylor --refinement 2 --independent --no-newton " +
-                armAndBall() + " --from 0,0 --to 90deg,0");
+  const Outcome run = this->run("check --json --method redon2004 " + armAndBall() + " --from 0,0 --to 90deg,0");
   ASSERT_EQ(run.status, 1) << run.err;
   const Json answer = Json::parse(run.out);
   EXPECT_NEAR(answer.at("t_lower").get<double>(), kContactAngle / (M_PI / 2), 2e-6);
   EXPECT_EQ(answer.at("statistics").at("redon2004").at("pairs_by_standard"),
             2);  // of two links: a ball has no triangles
   EXPECT_EQ(this->run("check --method redon2003 " + armAndBall() + " --from 0,0 --to 90deg,0").status, 2);
-  EXPECT_EQ(this->run("check --method redon2004 --refinement 7 " + armAndBall() + " --from 0,0 --to 90deg,0").status,
-            2);
 }
 
 TEST_F(ProgramTest, JsonHasItsKeysAndAllDigits) {
@@ -431,8 +427,7 @@ TEST_F(ProgramTest, ErrorsAreJsonToo) {
 }
 
 TEST_F(ProgramTest, HelpOfEveryVerbSaysItsExitStatuses) {
-  for (const char* verb : {"check", "certify", "srdf", "info", "compare", "generate", "bench robot", "bench planning",
-                           "bench certify", "bench rigid", "bench table1", "bench ideas", "bench depth"}) {
+  for (const char* verb : {"check", "certify", "srdf", "info", "generate", "bench robot"}) {
     const Outcome help = run(std::string(verb) + " --help");
     EXPECT_EQ(help.status, 0);
     expectContains(help.out, "Exit status: ");

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <regex>
 
 #include <nlohmann/json.hpp>
 
+#include "bench/bars.h"
 #include "bench/motion_timing.h"
 #include "bench/robot_bench.h"
 #include "planning/fcl_state_check.h"
@@ -330,6 +332,31 @@ TEST_F(ProgramTest, FclChecksCarriedObjectsAsTheManagerDoes) {
   EXPECT_FALSE(collides({{"box", box, link, at(0, 0, 1), {}}, {"other", box, link, at(0, 0, 1), {}}}));  // of one
 }
 
+std::vector<double> heightsOfBars(const std::string& svg) {
+  const std::regex bar("width=\"[0-9.]+\" height=\"([0-9.]+)\" fill=\"#");
+  std::vector<double> heights;
+  for (std::sregex_iterator i(svg.begin(), svg.end(), bar), end; i != end; ++i) {
+    if ((*i)[1] != "10") heights.push_back(std::stod((*i)[1]));  // those of the legend
+  }
+  return heights;
+}
+
+TEST(Bars, HeightsAreInProportion) {
+  const BarChart linear = {"title", "percent", false, {"a", "b"}, {{"one", {20, 40}}, {"two", {0, 10}}}};
+  const std::vector<double> h = heightsOfBars(toSvg({linear}));  // a: one, two; b: one, two
+  ASSERT_EQ(h.size(), 4u);
+  EXPECT_NEAR(h[2], 2 * h[0], 0.11);  // printed to a tenth
+  EXPECT_EQ(h[1], 0);
+  EXPECT_NEAR(h[3], h[0] / 2, 0.11);
+  const BarChart logarithmic = {
+      "title", "ms", true, {"a"}, {{"one", {10}}, {"two", {100}}, {"three", {1}}, {"four", {0}}}};
+  const std::vector<double> l = heightsOfBars(toSvg({logarithmic}));
+  ASSERT_EQ(l.size(), 4u);
+  EXPECT_NEAR(l[1], 2 * l[0], 0.11);
+  EXPECT_EQ(l[2], 0);  // the axis begins there
+  EXPECT_EQ(l[3], 0);
+}
+
 TEST_F(ProgramTest, BenchRobotPrintsATable) {
   const Outcome run =
       this->run("bench robot " + arm() + " --scene " + ball() + " --motions 20 --passes 1 --angle 20 --csv " +
@@ -408,6 +435,7 @@ TEST_F(ProgramTest, BenchRobotWithoutFclHasNoSamples) {
 }
 
 TEST_F(ProgramTest, BenchRobotRefusesWrongUse) {
+  EXPECT_EQ(this->run("bench").status, 2);
   EXPECT_EQ(this->run("bench robot").status, 2);
   for (const char* option : {"--angle 0", "--motions 0", "--passes 0", "--angle 5deg", "--srdf nowhere.srdf"}) {
     EXPECT_EQ(this->run("bench robot " + arm() + " " + option).status, 2) << option;

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <vector>
 
 #include "fcl_artic/joint_motion.h"
 #include "temp_folder.h"
@@ -60,6 +62,42 @@ TEST(KinematicTree, PlanarArmByHand) {
   expectPose(M_0[1], {0, 0, 0}, quarter_turn);
   expectPose(M_0[2], {0, 1, 0}, Eigen::Matrix3d::Identity());
   expectPose(M_0[3], {0.5, 1, 0}, Eigen::Matrix3d::Identity());
+}
+
+/// Links b and a stand alone, and joints come in no order: each is a tree of its own for a while.
+TEST(KinematicTree, JointsThatAreAddedTogetherMakeTheSameTree) {
+  const std::vector<Joint> joints{makeJoint("three", JointType::revolute, "c", "d", {1, 0, 0}, {0, 0, 1}),
+                                  makeJoint("one", JointType::planar, "a", "b", {0, 0, 0}, {0, 0, 1}),
+                                  makeJoint("four", JointType::prismatic, "c", "e", {0, 1, 0}, {0, 1, 0}),
+                                  makeJoint("two", JointType::continuous, "b", "c", {0, 0, 1}, {1, 0, 0})};
+  const auto links = [] {
+    KinematicTree tree("robot");
+    for (const char* link : {"e", "b", "a", "c", "d"}) tree.addLink(link);
+    return tree;
+  };
+  KinematicTree each = links(), all = links();
+  for (const Joint& joint : joints) each.addJoint(joint);
+  all.addJoints(joints);
+  EXPECT_TRUE(all.content().sameAs(each.content()));
+  EXPECT_TRUE(all.jointSpace().sameAs(each.jointSpace()));
+  EXPECT_EQ(all.topologicalOrder(), each.topologicalOrder());
+  EXPECT_EQ(all.topologicalOrder(), (std::vector<LinkId>{2, 1, 3, 0, 4})) << "a, b, c, then its children by number";
+  EXPECT_EQ(all.findJoint("four"), 2);
+  EXPECT_EQ(all.findJoint("five"), -1);
+  EXPECT_EQ(all.findVariable("one/theta"), 3);
+  EXPECT_EQ(all.variableName(all.findVariable("two")), "two");
+  EXPECT_EQ(all.findVariable("one"), -1) << "a joint of three variables";
+  EXPECT_EQ(all.addLink("f"), 5);
+  EXPECT_EQ(all.topologicalOrder(), (std::vector<LinkId>{2, 5, 1, 3, 0, 4})) << "the last of the roots";
+
+  // The last of three is refused, and none is added.
+  KinematicTree same = links();
+  std::vector<Joint> loop{joints[3], joints[0], makeJoint("back", JointType::fixed, "d", "b", {0, 0, 0}, {0, 0, 0})};
+  EXPECT_THROW(same.addJoints(loop), std::invalid_argument) << "b carries c, which carries d";
+  EXPECT_EQ(same.numJoints(), 0);
+  EXPECT_EQ(same.findJoint("two"), -1);
+  EXPECT_TRUE(same.content().sameAs(links().content()));
+  EXPECT_EQ(same.topologicalOrder(), links().topologicalOrder());
 }
 
 // A planar joint p has the variables p/x, p/y and p/theta.
@@ -311,7 +349,7 @@ TEST(KinematicTree, RefusesConfigurationsOfAnotherSizeOrNotFinite) {
   expectContains(messageOf<std::invalid_argument>([&] { tree.forwardKinematics(Eigen::Vector3d(0, 0, 0), M_0); }),
                  "q has 3 entries, robot 'arm' has 2");
   expectContains(messageOf<std::invalid_argument>([&] { tree.jointValue(0, Eigen::VectorXd::Zero(1)); }),
-                 "q has 1 entries");
+                 "q has 1 entry");
   expectContains(messageOf<std::invalid_argument>([&] { tree.jointPose(0, Eigen::VectorXd::Zero(3)); }),
                  "q has 3 entries");
   expectContains(messageOf<std::out_of_range>([&] { tree.linkName(99); }), "has no link 99: there are");
@@ -358,7 +396,7 @@ TEST(JointMotion, RefusesBadEnds) {
     return messageOf<std::invalid_argument>([&] { JointMotion::linear(tree, q0, q1); });
   };
   expectContains(linear(Eigen::VectorXd::Zero(3), zero), "q0 has 3 entries, robot 'arm' has 2");
-  expectContains(linear(zero, Eigen::VectorXd::Zero(1)), "q1 has 1 entries, robot 'arm' has 2");
+  expectContains(linear(zero, Eigen::VectorXd::Zero(1)), "q1 has 1 entry, robot 'arm' has 2");
   expectContains(linear(zero, Eigen::Vector2d(0, INFINITY)), "q1: the value inf of joint 'elbow'");
   expectContains(linear(Eigen::Vector2d(1.1e5, 0), zero), "joint 'shoulder' is beyond 1e5");
   expectContains(messageOf<std::invalid_argument>([&] { JointMotion::shortest(tree, zero, Eigen::Vector2d(0, kNaN)); }),

@@ -43,6 +43,14 @@ std::string linkWith(const std::string& content) {
   return "<link name='a'>" + content + "</link>";
 }
 
+/// Seconds of this process's own work.
+template <class Work>
+double secondsOf(const Work& work) {
+  const std::clock_t begin = std::clock();
+  work();
+  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+}
+
 class UrdfTest : public TempFolderTest {
  protected:
   Robot load(const std::string& body) { return loadUrdf(write("r.urdf", robot(body))); }
@@ -394,9 +402,35 @@ TEST_F(UrdfTest, ChainsOfThousandsOfLinksAreSetUpAtOnce) {
   const Robot chain = load(body);
   ArticulatedCollisionManager manager(chain.tree);
   chain.addTo(manager);
-  const std::clock_t begin = std::clock();
-  manager.setup();
-  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 1);  // a twentieth of that
+  EXPECT_LT(secondsOf([&] { manager.setup(); }), 1);  // a twentieth of that
+}
+
+// Names are looked up, and links are sorted, in n log n steps. With their square 20,000 links take 10 s.
+TEST_F(UrdfTest, TimeToReadGrowsWithTheFile) {
+  constexpr int kLinks = 20000;
+  std::string body = "<link name='l0'/>", srdf = "<robot name='r'>", strange = srdf;
+  for (int k = 1; k <= kLinks; ++k) {
+    const std::string parent = "l" + std::to_string(k - 1), link = "l" + std::to_string(k);
+    body += "<link name='" + link + "'/>" + joint("j" + std::to_string(k), "continuous", parent, link);
+    srdf += "<disable_collisions link1='" + parent + "' link2='" + link + "' reason='Adjacent'/>";
+    strange += "<disable_collisions link1='l0' link2='of_another_robot" + std::to_string(k) + "'/>";
+  }
+  Robot chain;
+  EXPECT_LT(secondsOf([&] { chain = load(body); }), 3);
+  EXPECT_EQ(chain.tree->topologicalOrder().back(), kLinks);
+  const std::string pairs = write("chain.srdf", srdf + "</robot>");
+  EXPECT_LT(secondsOf([&] { EXPECT_EQ(loadSrdf(pairs, *chain.tree).pairs().size(), std::size_t{kLinks}); }), 3);
+  const std::string unknown = write("strange.srdf", strange + "</robot>");
+  EXPECT_LT(secondsOf([&] { EXPECT_EQ(loadSrdf(unknown, *chain.tree).pairs().size(), 0u); }), 3);
+
+  // Elements that urdfdom does not get stand after as many others.
+  std::string parts, materials;
+  for (int k = 0; k < kLinks; ++k) {
+    parts += collision("<sphere radius='0.1'/>");
+    materials += "<material name='m" + std::to_string(k) + "'/>";
+  }
+  for (int k = 0; k < kLinks; ++k) parts += "<visual/>";
+  EXPECT_LT(secondsOf([&] { EXPECT_EQ(load(linkWith(parts) + materials).geometry.size(), std::size_t{kLinks}); }), 3);
 }
 
 // Python's strings, and messages of all kinds, are of characters.

@@ -37,7 +37,7 @@ expect(1 "NOT VERIFIED: the motion is about another world" ${WORK}/other.world $
 file(WRITE ${WORK}/robot.srdf "<robot name='r'/>")
 expect(1 "DIFFERENT: the world does not check the neighbours '[a-z]+' and '[a-z]+'" --compare-only ${world} --srdf ${WORK}/robot.srdf)
 file(WRITE ${WORK}/robot.srdf "<robot name='r'><disable_collisions link1='arm' link2='cart'/></robot>")
-expect(0 "1 pairs of names" --compare-only ${world} --srdf ${WORK}/robot.srdf)
+expect(0 "1 pair of names" --compare-only ${world} --srdf ${WORK}/robot.srdf)
 # A pair may not be left out for a reason that it has not, whatever the files say.
 file(READ ${world} text)
 string(REPLACE "unchecked neighbours" "unchecked still" text "${text}")

@@ -58,7 +58,7 @@ TEST_F(VerifyReaders, AWorldIsItsUrdf) {
   ASSERT_EQ(good.notes.size(), 4u);
   EXPECT_EQ(good.notes[0], "root link 'base' stands still in the world");
   EXPECT_EQ(good.notes[1], "the file has 5 links, 4 joints and 5 collision geometries, as the world has");
-  EXPECT_NE(good.notes[2].find("1 triangles without area"), std::string::npos) << good.notes[2];
+  EXPECT_NE(good.notes[2].find("1 triangle without area"), std::string::npos) << good.notes[2];
   for (const auto& [what, by] : std::vector<std::pair<std::string, std::string>>{
            {"1 0.5 0.25", "1 0.5 0.2500000001"},
            {"radius=\"0.1\"", "radius=\"0.10000000000000002\""},

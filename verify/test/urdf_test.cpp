@@ -2,6 +2,7 @@
 // Whose robot a proof is about: worlds that are not the file's to the last digit, and files that are not read in full.
 #include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "files.h"
 
@@ -385,6 +386,18 @@ TEST_F(VerifyMeshes, ComparingTakesNoTime) {
               "'/></geometry></collision>";
   for (int k = n; k < 2000; ++k) world += body("link", "a", 1);
   EXPECT_NE(said(world, robot(link("a", scales))).find("too much work"), std::string::npos);
+}
+
+// Each link's way to the root is gone once. (With the square of the links, 10,000 take 10 s.)
+TEST_F(VerifyUrdf, LongChainsAreReadAtOnce) {
+  std::string chain = link("l0", "");
+  for (int k = 1; k <= 10000; ++k) {
+    const std::string name = std::to_string(k);
+    chain += link("l" + name, "") + joint("j" + name, "fixed", "l" + std::to_string(k - 1), "l" + name);
+  }
+  const std::clock_t begin = std::clock();
+  EXPECT_NE(said(kHead + frame("l0", 0), robot(chain)).find("has no frame"), std::string::npos);
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 3);
 }
 
 TEST_F(VerifyMeshes, NumbersAreReadInFull) {

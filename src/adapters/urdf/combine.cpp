@@ -28,6 +28,7 @@ void addAllowed(const PlacedRobot& part, bool spelt_out, AllowedCollisionMatrix&
 
 Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& name) {
   auto tree = std::make_shared<KinematicTree>(name);
+  std::vector<Joint> joints;  // of all parts
   Robot all;
   const bool complete = !parts.empty() && std::all_of(parts.begin(), parts.end(), [](const PlacedRobot& part) {
     return part.robot && part.robot->allowed.complete();
@@ -52,12 +53,11 @@ Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& na
       link[static_cast<std::size_t>(l)] = tree->addLink(named(own.linkName(l)));
     }
     for (const LinkId l : roots) {
-      Joint joint;
+      Joint& joint = joints.emplace_back();
       joint.name = named("mount_to_" + own.linkName(l));
       joint.parent = mountOf(l);
       joint.child = named(own.linkName(l));
       joint.origin = part.base;
-      tree->addJoint(joint);
     }
     // In their own order: masters come before those that mimic them, and variables stay in order.
     for (JointId j = 0; j < own.numJoints(); ++j) {
@@ -66,7 +66,7 @@ Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& na
       joint.parent = named(joint.parent);
       joint.child = named(joint.child);
       if (joint.mimics) joint.mimic.master = named(joint.mimic.master);
-      tree->addJoint(joint);
+      joints.push_back(std::move(joint));
     }
     for (LinkGeometry geometry : part.robot->geometry) {
       geometry.link = link[static_cast<std::size_t>(geometry.link)];
@@ -79,6 +79,7 @@ Robot combineRobots(const std::vector<PlacedRobot>& parts, const std::string& na
     addAllowed(part, !complete, all.allowed);
     for (const std::string& note : part.robot->notes) all.notes.push_back(note);
   }
+  tree->addJoints(joints);
   all.tree = std::move(tree);
   return all;
 }

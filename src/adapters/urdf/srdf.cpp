@@ -71,9 +71,9 @@ class SrdfReader {
   static std::pair<std::string, std::string> key(const std::string& a, const std::string& b) {
     return a < b ? std::make_pair(a, b) : std::make_pair(b, a);
   }
+  static constexpr std::size_t kShown = 3;  ///< names, in messages
   /// "'a', 'b', 'c' and 9 more".
   static std::string firstOf(const std::vector<std::string>& names) {
-    constexpr std::size_t kShown = 3;
     std::string shown;
     for (std::size_t i = 0; i < std::min(kShown, names.size()); ++i) shown += (i ? ", '" : "'") + names[i] + "'";
     return names.size() <= kShown ? shown : shown + " and " + std::to_string(names.size() - kShown) + " more";
@@ -111,9 +111,9 @@ class SrdfReader {
     for (LinkId link = 0; link < tree_.numLinks(); ++link) {
       if (!known_.count(tree_.linkName(link))) unnamed.push_back(tree_.linkName(link));
     }
-    for (const std::string& name : unknown_) {
-      const std::string nearest = text::nearestName(name, unnamed);
-      if (!nearest.empty()) return note + "; did you mean '" + nearest + "' by '" + name + "'?";
+    for (std::size_t i = 0; i < std::min(kShown, unknown_.size()); ++i) {
+      const std::string nearest = text::nearestName(unknown_[i], unnamed);
+      if (!nearest.empty()) return note + "; did you mean '" + nearest + "' by '" + unknown_[i] + "'?";
     }
     return note;
   }

@@ -75,11 +75,17 @@ std::size_t numChildren(const tinyxml2::XMLElement* parent, const char* name = n
   return count;
 }
 
+void removeChildren(tinyxml2::XMLElement& parent, const char* name) {
+  for (auto* e = parent.FirstChildElement(name); e;) {
+    tinyxml2::XMLElement* const next = e->NextSiblingElement(name);
+    parent.DeleteChild(e);
+    e = next;
+  }
+}
+
 Document::Link readLink(const std::string& name, tinyxml2::XMLElement& element) {
   Document::Link link{name, numChildren(&element, "collision"), numChildren(&element, "visual") > 0};
-  for (const char* unused : {"visual", "inertial"}) {
-    while (auto* e = element.FirstChildElement(unused)) element.DeleteChild(e);
-  }
+  for (const char* unused : {"visual", "inertial"}) removeChildren(element, unused);
   return link;
 }
 
@@ -108,8 +114,7 @@ Document readDocument(const std::string& where, const std::string& file) {
       noteLimit(*e, document.notes);
     }
   }
-  // A material belongs to visual elements only, so it is dropped.
-  while (auto* material = robot.FirstChildElement("material")) robot.DeleteChild(material);
+  removeChildren(robot, "material");  // a material belongs to visual elements only
   tinyxml2::XMLPrinter printer;
   xml.Print(&printer);
   document.xml = printer.CStr();
@@ -260,7 +265,7 @@ std::shared_ptr<const KinematicTree> makeTree(const std::string& where, const ur
   try {
     for (const Document::Link& link : document.links) tree->addLink(link.name);
     placeBase(*tree, model.getRoot()->name, options);
-    std::vector<Joint> mimics;  // may stand before their masters in the file, and take no variable
+    std::vector<Joint> joints, mimics;  // the latter may stand before their masters in the file, and take no variable
     for (const std::string& name : document.joints) {
       const Joint joint = toJoint(where, *model.getJoint(name));
       if (joint.type == JointType::planar && !directionOf(joint.axis).isApprox(Eigen::Vector3d::UnitZ())) {
@@ -272,14 +277,12 @@ std::shared_ptr<const KinematicTree> makeTree(const std::string& where, const ur
       } else if (limitable && !joint.mimics && joint.lower > joint.upper) {
         notes.push_back("joint '" + name + "' has its lower limit above its upper one, and is taken to have none");
       }
-      if (joint.mimics) {
-        mimics.push_back(joint);
-      } else {
-        tree->addJoint(joint);
-      }
+      (joint.mimics ? mimics : joints).push_back(joint);
     }
+    tree->addJoints(joints);
     std::map<std::string, double> still;  // mimics that stand still, and where
-    for (Joint& joint : mastersFirst(mimics)) {
+    mimics = mastersFirst(mimics);
+    for (Joint& joint : mimics) {
       const auto found = still.find(joint.mimic.master);
       const urdf::JointConstSharedPtr master = model.getJoint(joint.mimic.master);
       const bool can_follow = KinematicTree::numVariables(joint.type) == 1 && !joint.axis.isZero(0);
@@ -290,8 +293,8 @@ std::shared_ptr<const KinematicTree> makeTree(const std::string& where, const ur
                         "' and is fixed too");
         freeze(joint, value);
       }
-      tree->addJoint(joint);
     }
+    tree->addJoints(mimics);
   } catch (const std::invalid_argument& error) {
     fail(where, error.what());
   }

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Motions of the very numbers that others have, which the public makers would round once more.
+#pragma once
+
+#include <vector>
+
+#include "fcl_artic/trajectory.h"
+
+namespace fcl_artic {
+
+struct ExactMotion {
+  /// @param coefficients  as JointMotion::coefficients() returns them: quaternions whose length is 1 to rounding are
+  /// taken
+  ///   as they are.
+  /// @param references  as JointMotion::references() returns them; empty: all variables are polynomials.
+  /// @throws std::invalid_argument as JointMotion::polynomial() and tangentHalfAnglePolynomial().
+  static JointMotion motion(const KinematicTree& tree, const Eigen::MatrixXd& coefficients,
+                            const Eigen::VectorXd& references);
+  /// @param pieces  over t in [0, 1] each.
+  /// @throws std::invalid_argument as JointTrajectory::piecewise().
+  static JointTrajectory trajectory(const KinematicTree& tree, const std::vector<double>& times,
+                                    std::vector<JointMotion> pieces);
+};
+
+}  // namespace fcl_artic
