@@ -41,7 +41,7 @@ class FCL_ARTIC_EXPORT Projector {
  public:
   enum class Outcome {
     misses,    ///< it covers no pixel of the tile
-    covers,    ///< it may: the footprint says which
+    mayCover,  ///< it may: the footprint says which
     unusable,  ///< a number is not finite, or the window has no volume: nothing is known
   };
   /// For the footprints to come; eta is not below 0.

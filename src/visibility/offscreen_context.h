@@ -15,7 +15,7 @@ std::unique_ptr<OffscreenContext> createEglContext(int major, int minor);
 
 /// Held while a context is made, used or destroyed. Mesa's software rasteriser looks through what the other contexts of
 /// a display are drawing without a lock (doc/VISIBILITY.md, "Contexts"): of ours one is at work at a time.
-std::mutex& openGlTurn();
+std::mutex& openGlMutex();
 
 /// A library that is opened at run time, and stays open.
 class SharedLibrary {

@@ -145,7 +145,7 @@ inline void AnyContact::considerLinks(PairId pair, Lanes square, double radii) {
     if (distance < kDeepLinks) tryLeafPair(pair, lane);
     return;
   }
-  const double reach = balls_.reach(pair);
+  const double reach = balls_.ballReach(pair);
   unsigned near = reach > 0 ? kAllLanes & ~greater(square, Lanes(reach * reach)) : 0;
   if (near && balls_.inLinks(pair, lane)) return;
   near &= ~(1u << lane);
@@ -210,7 +210,7 @@ inline bool AnyContact::tryOverlaps(Buffer<Entry>& open) {
   if (overlap_guesses_.size() == 0) return false;
   const TimeBatch middles = TimeBatch::middles();
   horizon_.dropSuspicion();
-  horizon_.watch(middles);
+  horizon_.setBatch(middles);
   const int roots = open.size();
   for (int i = 0; i < overlap_guesses_.size() && !horizon_.isOver(); ++i) {
     const Entry& e = overlap_guesses_[i];
@@ -219,7 +219,7 @@ inline bool AnyContact::tryOverlaps(Buffer<Entry>& open) {
     open.truncate(roots);
   }
   horizon_.dropSuspicion();
-  horizon_.watch(whole());
+  horizon_.setBatch(whole());
   return horizon_.isOver();
 }
 

@@ -74,7 +74,7 @@ class BallProofs : PartOfSolver {
   explicit BallProofs(SearchState& state)
       : PartOfSolver(state.task), frames_(state.frames), contacts_(state.contacts) {}
 
-  double reach(PairId pair) const;
+  double ballReach(PairId pair) const;
   bool inLinks(PairId pair, int lane);
   bool inSolid(PairId pair, int lane);
 
@@ -100,7 +100,7 @@ inline PlacedLink BallProofs::placedLink(int index, int lane) {
 }
 
 /// Distance of two links' line swept spheres' segments below which balls inside them may meet; 0: none can.
-inline double BallProofs::reach(PairId pair) const {
+inline double BallProofs::ballReach(PairId pair) const {
   const PairParts bodies = problem().parts(pair);
   const InnerBalls *a = body(bodies.a).balls, *b = body(bodies.b).balls;
   return a && b ? a->reach + b->reach : 0;

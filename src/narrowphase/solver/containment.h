@@ -33,7 +33,7 @@ class Containment : PartOfSolver {
 
  private:
   bool isSolid(const PairParts& bodies) const { return body(bodies.a).space || body(bodies.b).space; }
-  engine::Containment contained(PairId pair, double t);
+  engine::ContainmentVerdict contained(PairId pair, double t);
   void testAtStart(PairId pair);
 
   RelativeMotions& motions_;
@@ -44,7 +44,7 @@ class Containment : PartOfSolver {
 };
 
 /// Whether one body of a pair, whose surfaces may well be apart, lies within the other at time t.
-[[gnu::noinline]] inline engine::Containment Containment::contained(PairId pair, double t) {
+[[gnu::noinline]] inline engine::ContainmentVerdict Containment::contained(PairId pair, double t) {
   const Seen seen = motions_.of(pair, TimeBatch::around(t));
   const PairParts bodies = problem().parts(pair);
   const Body &a = body(bodies.a), &b = body(bodies.b);
@@ -55,23 +55,24 @@ class Containment : PartOfSolver {
   // 4: points are seen both ways, and as far from the frames as both bodies are large (doc/NUMERICS.md).
   pose.error = 4 * (seen->poseError() + m.rem_c + m.rem_R * (a.tree->extent + b.tree->extent));
   ++statistics().contact_proofs;
-  engine::Containment found;
+  engine::ContainmentVerdict found;
   problem().contained(a, b, pose, found);
-  FCL_ARTIC_ASSERT(found.verdict >= engine::Containment::kNone && found.verdict <= engine::Containment::kCertain);
+  FCL_ARTIC_ASSERT(found.verdict >= engine::ContainmentVerdict::kNone &&
+                   found.verdict <= engine::ContainmentVerdict::kCertain);
   return found;
 }
 
 inline bool Containment::mayBeContained(PairId pair, double t) {
   return problem().contained && isSolid(problem().parts(pair)) &&
-         contained(pair, t).verdict != engine::Containment::kNone;
+         contained(pair, t).verdict != engine::ContainmentVerdict::kNone;
 }
 
 inline void Containment::testAtStart(PairId pair) {
   if (!isSolid(problem().parts(pair))) return;
-  const engine::Containment found = contained(pair, 0);
-  if (found.verdict == engine::Containment::kNone) return;
+  const engine::ContainmentVerdict found = contained(pair, 0);
+  if (found.verdict == engine::ContainmentVerdict::kNone) return;
   LeafContact& contact = contained_.grow() = contactOf(problem(), pair, -1, -1);
-  contact.certain = found.verdict == engine::Containment::kCertain;
+  contact.certain = found.verdict == engine::ContainmentVerdict::kCertain;
   contact.t_upper = contact.certain ? 0 : 1;
   contact.feature = engine::kVolume;
   for (int k = 0; k < 3; ++k) {

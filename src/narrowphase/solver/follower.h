@@ -15,7 +15,7 @@ namespace FCL_ARTIC_ISA {
 constexpr double kFollowingAccuracy = 0.02;
 
 /// Nothing is known of how near they are.
-constexpr double kFarApart = 1e300;
+constexpr double kUnknownGap = 1e300;
 
 /// The open rest of a pair: one leaf pair or the hulls around both bodies, which are followed by themselves, or parts
 /// of their trees.
@@ -28,13 +28,13 @@ struct Candidate {
   std::int32_t first, count;      ///< of a lane of the first batch: its entries on PairSearch's stack
   double t_lower;                 ///< free before
   Vec3 normal;                    ///< GJK's witness at t_lower
-  double gap;                     ///< along it: a lower bound, far below it where GJK ends early
-  double apart;                   ///< an upper bound of the gap, from points of both
+  double gap_lower;               ///< along it: a lower bound, far below it where GJK ends early
+  double gap_upper;               ///< an upper bound of the gap, from points of both
   double pad;                     ///< of rounding, when it was looked at last
   double speed;                   ///< of the one body seen from the other, about
   bool have_normal;
   Simplex simplex;  ///< GJK's last
-  bool stuck;       ///< the gap is gone at t_lower, within rounding
+  bool gap_closed;  ///< the gap is gone at t_lower, within rounding
   bool certain;
   double t_upper;  ///< of a proven contact
   Vec3 point;      ///< likewise
@@ -154,16 +154,16 @@ inline bool Follower::findGap(Candidate& f, Seen seen, int lane, double tau, dou
   if (g.overlap) {
     Simplex nearest = g.simplex;
     if (!pieces.areBounded()) {
-      f.apart = g.lower - radii;  // there is one direction
+      f.gap_upper = g.lower - radii;  // there is one direction
     } else {
-      f.apart = originWeights(nearest) ? norm(combined(nearest)) - radii : kFarApart;
+      f.gap_upper = originWeights(nearest) ? norm(combined(nearest)) - radii : kUnknownGap;
     }
     return false;
   }
   f.normal = g.n;
   seen->setWitness(g.n);
-  f.gap = g.lower - radii;
-  f.apart = g.distance - radii;
+  f.gap_lower = g.lower - radii;
+  f.gap_upper = g.distance - radii;
   return f.have_normal = true;
 }
 
@@ -200,7 +200,7 @@ inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsi
   const double expected = query().tolerance_time / 16;
   double span = stop - f.t_lower, accuracy = patient ? 1e-7 : kFollowingAccuracy;
   Turning turning = {f.t_lower};
-  f.stuck = false;
+  f.gap_closed = false;
   for (int round = 0; round < (patient ? 48 : 24); ++round) {
     const double t = f.t_lower;
     stop = min(stop, horizon_.end());
@@ -230,14 +230,15 @@ inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsi
     // Lanes before it are free, and it is [tm - d, tm + d].
     const double root = (x >= 1 ? tm[lane] + d : (tm[lane] - d) + 2 * d * x) - 4 * kUlp;
     f.t_lower = max(t, min(stop, max(root, lane ? tm[lane] - 0.5 * w : t)));
-    const double progress = f.t_lower - turning.at, gap = f.gap;
+    const double progress = f.t_lower - turning.at, gap_before = f.gap_lower;
     const Vec3 before = f.normal;
     if (!findGap(f, seen, lane, (f.t_lower - tm[lane]) / d, accuracy)) break;
     turning.turns = progress > 0 && dot(before, f.normal) > 0.5 && piecesOf(f, seen).areBounded();
     turning.rate = turning.turns ? (f.normal - before) / progress : Vec3(0, 0, 0);
     turning.at = f.t_lower;
-    if (turning.at > t && gap > 0) {
-      const double left = max(0.0, f.gap) * (progress / gap);  // time until the gap is closed, at the speed seen
+    if (turning.at > t && gap_before > 0) {
+      const double left =
+          max(0.0, f.gap_lower) * (progress / gap_before);  // time until the gap is closed, at the speed seen
       if (!patient && left < expected) break;
       span = min(4 * span, max(2 * left, kNarrowestLane));
     } else {
@@ -247,8 +248,8 @@ inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsi
       span *= 0.125;
     }
   }
-  f.stuck = f.t_lower < min(stop, horizon_.end());
-  return !f.stuck;
+  f.gap_closed = f.t_lower < min(stop, horizon_.end());
+  return !f.gap_closed;
 }
 
 /// For queries that any contact answers: the lanes of a followed pair reach beyond the contact that is expected. The
@@ -266,7 +267,7 @@ inline bool Follower::proveAhead(Candidate& f, Seen seen, int lane) {
   f.target = Candidate::Target::leafPair;
   f.piece_a = piece_a;
   f.piece_b = piece_b;
-  f.certain = f.stuck = true;
+  f.certain = f.gap_closed = true;
   f.t_upper = t;
   return true;
 }

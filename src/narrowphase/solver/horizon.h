@@ -35,7 +35,7 @@ class Horizon : PartOfSolver {
   }
 
   /// Sets the batch: live() and contactLane() name lanes of it.
-  void watch(const TimeBatch& batch) {
+  void setBatch(const TimeBatch& batch) {
     if (suspected_ <= batch.start[0]) suspected_ = kNever;  // all is proven free up to here: it was no contact
     start_ = batch.start;
     finish_ = batch.end;

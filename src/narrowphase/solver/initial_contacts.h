@@ -40,7 +40,7 @@ class InitialContacts : PartOfSolver {
 inline double InitialContacts::firstFreeTime(PairId pair, double start, double width) {
   const TimeBatch batch = TimeBatch::partsOf(start, width);
   ++statistics().batches;
-  horizon_.watch(batch);
+  horizon_.setBatch(batch);
   const unsigned blocked = traversal_.blockedLanes(motions_.of(pair, batch), kAllLanes);
   for (int lane = 0; lane < kLanes; ++lane) {
     if (!(blocked >> lane & 1)) {
@@ -69,7 +69,7 @@ inline void InitialContacts::collect(const Buffer<Entry>& open) {
   for (int i = 0; i < open.size(); ++i) {
     const PairId pair = open[i].pair;
     if (!mayIgnore(pair)) continue;
-    horizon_.watch(at_start);
+    horizon_.setBatch(at_start);
     if (traversal_.blockedLanes(motions_.of(pair, at_start), 1) || containment_.isContainedAtStart(pair)) {
       contacts_.ignore(pair, firstFreeTime(pair, 0, 1));
     }

@@ -112,9 +112,9 @@ class PairSearch : PartOfSolver {
   /// The state of leaf pairs at one time: none is known to touch, or one may, or one is recorded as a contact.
   enum class Touching { no, maybe, recorded };
 
-  void watch(const TimeBatch& batch) {
+  void setBatch(const TimeBatch& batch) {
     ++statistics().batches;
-    horizon_.watch(batch);
+    horizon_.setBatch(batch);
   }
   Aim aim() const { return horizon_.isFinest() ? Aim::leaves : Aim::split; }
   bool isLeafPair(const Entry& e) const {
@@ -132,8 +132,8 @@ class PairSearch : PartOfSolver {
   /// Whether points of both bodies are so near that no proof can separate them. (A small gap that is proven along one
   /// direction does not show that they are near.) Points within the pad of rounding are near whatever the tolerance: no
   /// lane is narrow enough to prove such a gap.
-  bool isNear(double apart, double pad) const { return apart <= max(0.5 * query().tolerance_distance, pad); }
-  bool isNear(const Candidate& f) const { return isNear(f.apart, f.pad); }
+  bool isNear(double gap_upper, double pad) const { return gap_upper <= max(0.5 * query().tolerance_distance, pad); }
+  bool isNear(const Candidate& f) const { return isNear(f.gap_upper, f.pad); }
 
   /// The width of a window that is not divided on.
   double finestWidth() const { return max(query().tolerance_time, kNarrowestLane); }
@@ -183,7 +183,7 @@ inline Candidate PairSearch::candidateOf(const Entry& e, double start) const {
   Candidate f = {};
   f.entry = e;
   f.t_lower = max(start, contacts_.watchFrom(e.pair));
-  f.apart = kFarApart;
+  f.gap_upper = kUnknownGap;
   f.piece_a = body(pair.a).tree->nodes[e.a].piece();
   f.piece_b = body(pair.b).tree->nodes[e.b].piece();
   return f;
@@ -252,7 +252,7 @@ inline bool PairSearch::recordAtStart(const Selection& of) {
   const Shortened shortened(stack_);
   const int out_begin = stack_.size();
   const TimeBatch batch = TimeBatch::partsOf(0, finestEnd(0));
-  watch(batch);
+  setBatch(batch);
   const Seen seen = motions_.of(pair, batch);
   for (int i = of.begin; i < of.end && stack_.size() < out_begin + kEnoughUncertain; ++i) {
     const Entry e = of.list[i];
@@ -331,7 +331,7 @@ inline void PairSearch::run(const Buffer<Entry>& open) {
   for (int i = 0; i < open.size() && !task_.ended(); ++i) {
     const int before = contacts_.size();
     horizon_.dropSuspicion();
-    watch(whole());
+    setBatch(whole());
     search(open, i, i + 1);
     contacts_.order(before, horizon_.end());
   }
@@ -393,7 +393,7 @@ inline void PairSearch::lookAtPutOff(unsigned later) {
   for (int i = 0; i < end; ++i) any = any || (pieces_[i].put_off && (pieces_[i].mask & next));
   if (!any) return;
   horizon_.dropSuspicion();
-  watch(whole());
+  setBatch(whole());
   for (int i = 0; i < end; ++i) {
     const Entry e = pieces_[i];
     if (!e.put_off) continue;
@@ -497,7 +497,7 @@ inline void PairSearch::solvePieces(const Candidate& f, double stop, int lane) {
 inline PairSearch::LaneResult PairSearch::solveInterval(const Selection& of, const Window& window) {
   FCL_ARTIC_ASSERT(of.begin < of.end);
   const TimeBatch batch = TimeBatch::partsOf(window.start, window.width);
-  watch(batch);
+  setBatch(batch);
   if (task_.ended()) return LaneResult::done;
   const Shortened shortened(stack_);
   const int begin = stack_.size();
@@ -550,7 +550,7 @@ inline PairSearch::LaneResult PairSearch::followLeaves(const Selection& of, cons
   // (Where any contact will do and one is proven, it is recorded whatever is still open.)
   for (int i = 0; i < leaves_.size() && !horizon_.isOver(); ++i) {
     const Candidate& f = leaves_[i];
-    if (!f.stuck || f.certain || f.t_lower >= horizon_.end()) continue;
+    if (!f.gap_closed || f.certain || f.t_lower >= horizon_.end()) continue;
     if (!narrow && (!window.finest || !isNear(f))) {
       // Contacts proven meanwhile are kept: the horizon ends at their time, and narrower lanes may prove later ones
       // only.
@@ -563,7 +563,7 @@ inline PairSearch::LaneResult PairSearch::followLeaves(const Selection& of, cons
   }
   const int before = contacts_.size();
   for (int i = 0; i < leaves_.size(); ++i) {
-    if (leaves_[i].stuck && leaves_[i].t_lower <= horizon_.end()) writer_.record(leaves_[i]);
+    if (leaves_[i].gap_closed && leaves_[i].t_lower <= horizon_.end()) writer_.record(leaves_[i]);
   }
   return contacts_.size() > before ? LaneResult::done : LaneResult::free;
 }
@@ -579,7 +579,7 @@ inline void PairSearch::followEach(const Window& window) {
     Candidate& f = leaves_[i];
     if (!follower_.followToRoot(f, window.end(), false) && !f.certain) follower_.decide(f, window.end());
     if (horizon_.mustEnd()) return;
-    uncertain += f.stuck && !f.certain && isNear(f);
+    uncertain += f.gap_closed && !f.certain && isNear(f);
     if (uncertain >= kEnoughUncertain && i + 1 < leaves_.size()) {
       f.t_lower = max(window.start, contacts_.watchFrom(f.entry.pair));
       leaves_.truncate(i + 1);

@@ -44,7 +44,7 @@ inline int piecesAround(const TreeView& tree, int at_vertices, const Vec3& point
 /// other. These are the axes of their frames, the normals of triangles at a witness, and those of the faces of a
 /// simplex that holds the origin. (If the hulls touch, the origin lies on one of these faces.)
 inline double gapWhereTheyRest(const DifferenceBody& hulls, const Simplex& simplex) {
-  double gap = -kFarApart;
+  double gap = -kUnknownGap;
   const auto tryDirection = [&](const Vec3& n) {
     const double length = norm(n);
     if (!(length > 0)) return;
@@ -76,7 +76,7 @@ inline double gapWhereTheyRest(const DifferenceBody& hulls, const Simplex& simpl
 inline double restingGap(const DifferenceBody& hulls, double radii, double shallow, GjkResult& g) {
   gjk(hulls, hulls.pose.c, {kFollowingAccuracy, radii, 64}, g);
   if (!g.overlap || unbounded(*hulls.a) || unbounded(*hulls.b)) return g.lower - radii;
-  return depthWithin(g.simplex) + radii > shallow ? -kFarApart : gapWhereTheyRest(hulls, g.simplex) - radii;
+  return depthWithin(g.simplex) + radii > shallow ? -kUnknownGap : gapWhereTheyRest(hulls, g.simplex) - radii;
 }
 
 /// The same of a pair's hulls, where a lane begins. (In a wide lane the pose is off by what the quadratic leaves out.)
