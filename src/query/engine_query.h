@@ -25,13 +25,12 @@ class QueryWorkspace {
     if (!redon_) redon_ = std::make_unique<redon::Workspace>();
     return *redon_;
   }
-  engine::Body bodies[2];                     ///< of a pair query: only their trees are set
-  FrameSweep sweep;                           ///< of a pair query
-  std::vector<double> coefficients;           ///< of its variables
-  std::vector<std::uint8_t> link_free;        ///< of a manager's query: link pairs that are proven apart
-  std::vector<engine::LikelyContact> likely;  ///< of a manager's query
-  std::vector<std::uint8_t>
-      scene_allowed;  ///< of a manager's query: Problem::scene_allowed, with pairs that are left out
+  engine::Body bodies[2];                      ///< of a pair query: only their trees are set
+  FrameSweep sweep;                            ///< of a pair query
+  std::vector<double> coefficients;            ///< of its variables
+  std::vector<std::uint8_t> link_free;         ///< of a manager's query: link pairs that are proven apart
+  std::vector<engine::LikelyContact> likely;   ///< of a manager's query
+  std::vector<std::uint8_t> scene_allowed;     ///< of a manager's query: with pairs that are left out
   std::vector<std::uint8_t> link_allowed;      ///< likewise
   std::vector<engine::BoundedSource> sources;  ///< of a query's bounded motions
 

@@ -44,7 +44,7 @@ struct ArticulatedCollisionManager::QueryContext {
   /// stage 2.
   const engine::Advisor* stage2 = nullptr;
 
-  /// Of a query of clearance(): pairs' own margins do not hold, but those of neighbours do.
+  /// The settings of a query of clearance(): pairs' own margins do not hold, but neighbours' do.
   static QueryContext ofClearance(const std::vector<engine::PairId>& left_out) {
     QueryContext context;
     context.own_margins = false;

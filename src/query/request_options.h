@@ -48,8 +48,8 @@ const char* nameOf(E value) {
 
 struct RequestOption {
   const char* name;  ///< in Python and in JSON
-  const char*
-      program;  ///< the program's option; for a flag that is on by default, the one that switches it off; null: none
+  /// The program's option; for a flag that is on by default, the one that switches it off; null: none.
+  const char* program;
   const char* help;  ///< for a flag that is on by default, an imperative
 };
 

@@ -25,9 +25,10 @@ ValueRange wholeRange(const KinematicTree& tree, int variable);
 /// The kinematic chain from one link (A) to another one (B).
 class LinkChain {
  public:
-  /// The numbers of steps that are cut off at the ends of the chain. A ball about the first joint that is left takes
-  /// the place of the steps and the link at that end. It holds the link for all values of these steps' variables
-  /// (doc/NUMERICS.md, Lemma 10). A proof of the rest is easier: the bodies are larger, but the variables are fewer.
+  /// The numbers of steps that are cut off at the ends of the chain. At each end a ball takes the place of these steps
+  /// and of the link. Its middle is the origin of the cut step that is next to the rest. It holds the link for all
+  /// values of these steps' variables (doc/NUMERICS.md, Lemma 10). A proof of the rest is easier: the bodies are
+  /// larger, but the variables are fewer.
   struct Cut {
     std::size_t steps_at_a, steps_at_b;
   };

@@ -13,7 +13,7 @@
 // 4. In the first batch (PairSearch::testHulls()) pair by pair, links deepest in each other first (deepestFirst()). If
 //    the hulls are not proven apart, tryLinks() tries balls inside the links at all other poses in which these may
 //    meet. If the links are deep in each other, it also tests their nodes' boxes by the six axes, in one pose, down to
-//    triangles of which an edge of one certainly pierces the other.
+//    triangles. Contact is proven if an edge of one certainly pierces another.
 // 5. tryOverlaps(): leaves at the middle of a part in which hulls overlap, unless the pair rests from the start on.
 // 6. In the search, Follower::proveAhead(): the pieces at a followed pair's witness, a little after the contact
 //    expected.

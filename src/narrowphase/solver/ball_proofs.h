@@ -168,8 +168,8 @@ inline Vec3Lanes farPoints(const TreeView& solid) {
   return points;
 }
 
-/// A link and a solid at a lane's middle: a ball inside the link's mesh meets the solid; and the solid, which is one
-/// convex piece, reaches out of the closed part that holds the ball.
+/// A link and a solid, which is one convex piece, at a lane's middle. A ball inside the link's mesh meets the solid,
+/// and the solid reaches out of the closed part that holds the ball.
 inline bool BallProofs::inSolid(PairId pair, int lane) {
   const PairParts bodies = problem().parts(pair);
   const Body &solid = body(bodies.a), &link = body(bodies.b);

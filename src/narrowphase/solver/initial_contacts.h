@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Pairs in contact at t = 0 that are ignored until they have separated: until the begin of the first lane in which they
-// are proven free. Of solid meshes neither may lie within the other there.
+// are proven free. If they are solid meshes, neither may lie within the other there.
 #pragma once
 
 #include "narrowphase/solver/containment.h"

@@ -15,8 +15,8 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// Of two nodes one is always tested by its swept box. The other one is too, unless its radius is this many times its
-/// partner's or more, and its swept box is not there yet. Measured: a quarter less time for a link amid one large mesh,
+/// One of two nodes is always tested by its swept box. So is the other one, unless its radius is this many times its
+/// partner's or more and its swept box is not there yet. Measured: a quarter less time for a link amid one large mesh,
 /// no change elsewhere; 1 is slower.
 constexpr double kLargerNode = 2;
 /// Nodes smaller than this part of the motion are split in time before they are split in space. Measured: anything from
