@@ -5,7 +5,7 @@
 // pose's.
 //
 // 1. Before stage 1, tryLikely(): balls inside two links, in the middle of a part for which an advisor suggests that
-// they meet.
+//    they meet.
 // 2. In stage 1, tryObstacle(), for a link deep in a solid: a ball inside the link, a hull's vertex in the solid, a
 //    chord of the solid through a triangle.
 // 3. In stage 1, considerLinks(): a ball inside a link in a ball inside another, in the pose in which their line

@@ -142,10 +142,9 @@ class Follower : PartOfSolver {
 };
 
 /// Stores GJK's witness, and bounds of the gap, in f.
-@param tau the time, from - 1 to 1 across the lane.
-                            /// @return false if GJK claims overlap: then only the simplex and `gap_upper` are set.
-                            inline bool
-                            Follower::findGap(Candidate&f, Seen seen, int lane, double tau, double accuracy) {
+/// @param tau  the time, from -1 to 1 across the lane.
+/// @return false if GJK claims overlap: then only the simplex and `gap_upper` are set.
+inline bool Follower::findGap(Candidate& f, Seen seen, int lane, double tau, double accuracy) {
   const PiecePair pieces = piecesOf(f, seen);
   const double radii = pieces.a.radius + pieces.b.radius + seen->margin();
   const DifferenceBody body = seen->differenceAt(pieces.a, pieces.b, lane, tau);
@@ -289,7 +288,8 @@ inline bool Follower::decide(Candidate& f, double stop) {
 }
 
 /// Tries to prove contact within the tolerance after t_lower.
-@ return whether it is proven.inline bool Follower::prove(Candidate & f) {
+/// @return whether it is proven.
+inline bool Follower::prove(Candidate& f) {
   // Not quite 1: the sum rounds, and the bracket is to be no wider than the tolerance.
   static const double kOffsets[kLanes] = {0.25, 0.5, 0.999, 0x1p-4, 0x1p-6, 0x1p-9, 0x1p-14, 0};
   TimeBatch poses = {};

@@ -47,8 +47,9 @@ class RelativeMotion : PartOfSolver {
   /// B seen from A, as it is evaluated: without what certificates need.
   const RigidLanes& seenFromA() const { return side_[0].m; }
   /// The way of a point p of B's tree frame as seen from A's tree frame.
-  @ return radius of the ball about a place on that way that holds the point then.double seePoint(const Vec3& p,
-                                                                                                  PointLanes& x) const {
+  /// @param[out] x  its quadratic.
+  /// @return radius: at each time the point is no farther than this from x.
+  double seePoint(const Vec3& p, PointLanes& x) const {
     const RigidLanes& m = side_[0].m;
     for (int order = 0; order < 3; ++order) x.c[order] = mulAdd(m.R[order], spread(p), m.c[order]);
     // The pad is for points no farther out than the bodies' own; it scales with sizes.
