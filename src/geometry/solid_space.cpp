@@ -17,7 +17,7 @@ namespace fcl_artic {
 namespace {
 
 using Eigen::Vector3d;
-using engine::Containment;
+using engine::ContainmentVerdict;
 using engine::Node;
 using engine::PairPose;
 using engine::Piece;
@@ -224,7 +224,7 @@ void forPartsWithin(const SurfacePoints& points, const engine::TreeView& solid, 
 /// Parts of the one body within the other, a solid.
 /// @param of_b  the parts are B's and the solid is A.
 void partsWithin(const SurfacePoints& points, const engine::Body& solid, const PairPose& pose, bool of_b,
-                 Containment& found) {
+                 ContainmentVerdict& found) {
   const SeenPoints seen(pose, !of_b);
   forPartsWithin(points, *solid.tree, seen, [&](const SurfacePoints::Part& part) {
     for (const Vector3d& p : part.points) {
@@ -239,11 +239,11 @@ void partsWithin(const SurfacePoints& points, const engine::Body& solid, const P
       out = out.norm() > kLeastMeshLength ? Vector3d(out.normalized()) : Vector3d::UnitZ();
       Vector3d::Map(found.point) = of_b ? x : p;
       Vector3d::Map(found.normal) = of_b ? out : Vector3d(-seen.back(out));
-      found.verdict = Containment::kCertain;
+      found.verdict = ContainmentVerdict::kCertain;
       return true;
     }
-    if (found.verdict == Containment::kNone) {
-      found.verdict = Containment::kPossible;
+    if (found.verdict == ContainmentVerdict::kNone) {
+      found.verdict = ContainmentVerdict::kPossible;
       double error;
       const Vector3d x = seen.point(part.points[0], error);
       Vector3d::Map(found.point) = of_b ? x : part.points[0];
@@ -255,10 +255,11 @@ void partsWithin(const SurfacePoints& points, const engine::Body& solid, const P
 
 }  // namespace
 
-void findContained(const engine::Body& a, const engine::Body& b, const PairPose& pose, Containment& found) {
-  found.verdict = Containment::kNone;
+void findContained(const engine::Body& a, const engine::Body& b, const PairPose& pose, ContainmentVerdict& found) {
+  found.verdict = ContainmentVerdict::kNone;
   if (a.space && b.points) partsWithin(*b.points, a, pose, true, found);
-  if (found.verdict != Containment::kCertain && b.space && a.points) partsWithin(*a.points, b, pose, false, found);
+  if (found.verdict != ContainmentVerdict::kCertain && b.space && a.points)
+    partsWithin(*a.points, b, pose, false, found);
 }
 
 }  // namespace fcl_artic

@@ -61,6 +61,6 @@ class SurfacePoints {
 
 /// engine::Problem::contained.
 void findContained(const engine::Body& a, const engine::Body& b, const engine::PairPose& pose,
-                   engine::Containment& found);
+                   engine::ContainmentVerdict& found);
 
 }  // namespace fcl_artic

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// All that stays the same from query to query: bodies, pairs, margins. Plain data; its owner is Setup.
+// All that stays the same from query to query: bodies and pairs. Plain data; its owner is Setup.
 #pragma once
 
 #include <cstdint>
@@ -64,7 +64,7 @@ struct PairPose {
   double error;
 };
 /// Whether a part of one body's surface lies within the other body, a mesh that is a solid.
-struct Containment {
+struct ContainmentVerdict {
   static constexpr std::int32_t kNone = 0, kPossible = 1, kCertain = 2;
   std::int32_t verdict;
   double point[3];   ///< of that part, in A's tree frame
@@ -100,7 +100,7 @@ struct Problem : PairNumbering {
   const StillBounds* still_bounds = nullptr;    ///< of obstacle o
   const WideNode* obstacle_tree = nullptr;      ///< boxes in the world; leaf piece = obstacle; null when there is none
   /// Where a mesh is a solid: asked of each pair with one, at a pose. Null: all meshes are surfaces.
-  void (*contained)(const Body& a, const Body& b, const PairPose& pose, Containment& found) = nullptr;
+  void (*contained)(const Body& a, const Body& b, const PairPose& pose, ContainmentVerdict& found) = nullptr;
 
   [[gnu::always_inline]] std::int32_t numPairs() const { return num_scene_pairs + num_link_pairs; }
   /// All of them, in their order.

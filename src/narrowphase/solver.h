@@ -32,7 +32,7 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
 
   const double time0 = task.now();
   ++statistics.batches;
-  horizon.watch(task.whole);
+  horizon.setBatch(task.whole);
   stage_one.cull(open);
   if (query.any && !horizon.isOver()) any.tryOverlaps(open);
   statistics.culling_us = task.now() - time0;
@@ -42,7 +42,7 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   const double time1 = task.now();
   if (query.ignore_initial && !horizon.isOver()) {
     initial.collect(open);
-    horizon.watch(task.whole);
+    horizon.setBatch(task.whole);
   }
   if (!task.ended()) containment.report(open);
   if (!task.ended() && horizon.end() > 0) {

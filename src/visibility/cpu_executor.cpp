@@ -67,7 +67,7 @@ void CpuExecutor::drawSwept(const Batch& batch) {
     for (int view = 0; view < kViews; ++view) {
       const auto outcome = projector_.project(batch, swept.volume, batch.windows[w], view, footprint_);
       if (outcome == Projector::Outcome::unusable) unusable_[w] = 1;
-      if (outcome != Projector::Outcome::covers) continue;
+      if (outcome != Projector::Outcome::mayCover) continue;
       const std::size_t tile = tileBegin(batch, swept.window, view),
                         index = kViews * w + static_cast<std::size_t>(view);
       tile_nearest_[index] = std::min(tile_nearest_[index], footprint_.bounds[0].lower);

@@ -93,7 +93,7 @@ class EglContext : public OffscreenContext {
     }
   }
   ~EglContext() override {
-    const std::lock_guard<std::mutex> turn(openGlTurn());
+    const std::lock_guard<std::mutex> turn(openGlMutex());
     egl_.destroyContext(egl_.display, context_);
     egl_.leaveThread();
   }

@@ -175,7 +175,7 @@ Projector::Outcome Projector::project(const Batch& batch, const Volume& volume, 
     }
   }
   addSlopes(f);
-  return Outcome::covers;
+  return Outcome::mayCover;
 }
 
 int clipToTile(const Footprint& f, int resolution, double (*polygon)[2]) {

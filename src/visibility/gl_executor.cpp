@@ -29,7 +29,7 @@ struct GlExecutor::Current {
   ~Current() { context_.release(); }
   Current(const Current&) = delete;
   Current& operator=(const Current&) = delete;
-  const std::lock_guard<std::mutex> turn_{openGlTurn()};
+  const std::lock_guard<std::mutex> turn_{openGlMutex()};
   OffscreenContext& context_;
 };
 
@@ -233,7 +233,7 @@ void GlExecutor::runWindows(const Batch& batch, std::int32_t begin, std::int32_t
       const auto outcome = projector_.project(batch, swept.volume,
                                               batch.windows[static_cast<std::size_t>(swept.window)], view, footprint_);
       if (outcome == Projector::Outcome::unusable) unusable[static_cast<std::size_t>(swept.window - begin)] = 1;
-      if (outcome != Projector::Outcome::covers) continue;
+      if (outcome != Projector::Outcome::mayCover) continue;
       place(batch, footprint_, kViews * (swept.window - begin) + view, 0, swept_);
     }
   }
@@ -268,7 +268,7 @@ void GlExecutor::runWindows(const Batch& batch, std::int32_t begin, std::int32_t
         const auto outcome = projector_.project(batch, batch.objects[i].volume,
                                                 batch.windows[static_cast<std::size_t>(window)], view, footprint_);
         if (outcome == Projector::Outcome::unusable) kept[unit] = 1;
-        if (outcome == Projector::Outcome::covers)
+        if (outcome == Projector::Outcome::mayCover)
           place(batch, footprint_, kViews * (window - begin) + view, id, objects_);
       }
       range.count = static_cast<std::int32_t>(objects_.size()) - range.first;

@@ -9,7 +9,7 @@
 namespace fcl_artic {
 namespace visibility {
 
-std::mutex& openGlTurn() {
+std::mutex& openGlMutex() {
   static std::mutex mutex;
   return mutex;
 }
@@ -31,7 +31,7 @@ void* SharedLibrary::address(const char* name) const {
 }  // namespace visibility
 
 std::unique_ptr<OffscreenContext> OffscreenContext::create(OffscreenBackend backend, int major, int minor) {
-  const std::lock_guard<std::mutex> turn(visibility::openGlTurn());
+  const std::lock_guard<std::mutex> turn(visibility::openGlMutex());
   return backend == OffscreenBackend::osmesa ? visibility::createOsmesaContext(major, minor)
                                              : visibility::createEglContext(major, minor);
 }

@@ -53,7 +53,7 @@ class OsmesaContext : public OffscreenContext {
     }
   }
   ~OsmesaContext() override {
-    const std::lock_guard<std::mutex> turn(openGlTurn());
+    const std::lock_guard<std::mutex> turn(openGlMutex());
     osmesa_.destroy(context_);
   }
 

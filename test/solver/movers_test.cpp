@@ -80,7 +80,7 @@ class ManyBalls : public SolverParts {
   }
   void begin() {
     SolverParts::begin(problem, query);
-    horizon.watch(task.whole);
+    horizon.setBatch(task.whole);
   }
   Vec3 center(int i, double t) const {
     Vec3 c(steps[static_cast<std::size_t>(i)].p);

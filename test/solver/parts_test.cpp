@@ -126,9 +126,9 @@ TEST(Horizon, WhatIsSuspectedPutsLaterLanesOffAndNothingElse) {
   EXPECT_EQ(horizon.live(), 0b111u);
   EXPECT_EQ(horizon.end(), kNever);
   EXPECT_EQ(horizon.first().t_lower, kNever);
-  horizon.watch(TimeBatch::partsOf(0.3, 0.1));  // proven free up to there: it was none
+  horizon.setBatch(TimeBatch::partsOf(0.3, 0.1));  // proven free up to there: it was none
   EXPECT_EQ(horizon.live(), kAllLanes);
-  horizon.watch(TimeBatch::middles());  // poses: none is put off
+  horizon.setBatch(TimeBatch::middles());  // poses: none is put off
   horizon.suspect(0.1);
   EXPECT_EQ(horizon.live(), kAllLanes);
 }
@@ -373,7 +373,7 @@ TEST(BallProofs, BallsInLinksMeetAndNeitherLinkIsWithinTheOther) {
   for (int k = 0; k < kLanes; ++k) {
     world.begin();
     world.frames.set(world.task.whole);
-    EXPECT_DOUBLE_EQ(world.balls.reach(TwoBalls::kPair), 0.4 + 0.2);
+    EXPECT_DOUBLE_EQ(world.balls.ballReach(TwoBalls::kPair), 0.4 + 0.2);
     const bool meet = k == 3 || k == 5;  // in lane 4 B lies within A
     EXPECT_EQ(world.balls.inLinks(TwoBalls::kPair, k), meet) << k;
     ASSERT_EQ(world.contacts.size(), meet) << k;
@@ -382,7 +382,7 @@ TEST(BallProofs, BallsInLinksMeetAndNeitherLinkIsWithinTheOther) {
     }
   }
   world.bodies[0].balls = nullptr;
-  EXPECT_EQ(world.balls.reach(TwoBalls::kPair), 0);
+  EXPECT_EQ(world.balls.ballReach(TwoBalls::kPair), 0);
 }
 
 TEST(HullSimplices, AreOfThePairAndTheQuery) {
@@ -421,7 +421,7 @@ TEST(Follower, FindsTheRootAndProvesTheContact) {
   Candidate f = {};
   f.entry = {TwoBalls::kPair, 0, 0, kAllLanes};
   EXPECT_FALSE(world.follower.followToRoot(f, 1, true));
-  EXPECT_TRUE(f.stuck);
+  EXPECT_TRUE(f.gap_closed);
   EXPECT_LE(f.t_lower, TwoBalls::kFirst);
   EXPECT_GT(f.t_lower, TwoBalls::kFirst - 1e-6);
   EXPECT_FALSE(world.follower.decide(f, 1));
@@ -455,7 +455,7 @@ TEST(Follower, ComesToTheEndOfWhatIsFree) {
   Candidate f = {};
   f.entry = {TwoBalls::kPair, 0, 0, kAllLanes};
   EXPECT_TRUE(world.follower.followToRoot(f, 0.3, false));
-  EXPECT_FALSE(f.stuck);
+  EXPECT_FALSE(f.gap_closed);
   EXPECT_GE(f.t_lower, 0.3);
 }
 
@@ -657,9 +657,9 @@ TEST(InitialContacts, AreIgnoredUntilTheyHaveSeparated) {
 TEST(Containment, AsksOfSolidsOnlyAndReportsAtTheStart) {
   TwoBalls world(0, 4);
   world.asPair().problem.contained = [](const Body&, const Body&, const engine::PairPose& pose,
-                                        engine::Containment& found) {
+                                        engine::ContainmentVerdict& found) {
     found = {};
-    found.verdict = pose.c[2] < 0.5 ? engine::Containment::kCertain : engine::Containment::kNone;
+    found.verdict = pose.c[2] < 0.5 ? engine::ContainmentVerdict::kCertain : engine::ContainmentVerdict::kNone;
     found.normal[2] = 1;
   };
   world.begin();

@@ -68,7 +68,7 @@ class TwoBalls : public SolverParts {
 
   void begin() {
     SolverParts::begin(problem, query);
-    horizon.watch(task.whole);
+    horizon.setBatch(task.whole);
   }
 
   /// Lanes of [0, 1] in which the balls touch at some time.

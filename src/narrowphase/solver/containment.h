@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Meshes that are solids. All other parts prove that the mesh's surface is apart from the other body. As long as it is,
-// neither body can come to lie within the other. So one pose shows whether one does (doc/NUMERICS.md, "Solid meshes").
+// Solid meshes. All other parts of the solver prove only that a mesh's surface is apart from the other body. As long as
+// it is, neither body can come to lie within the other. So one pose shows whether one body lies within the other all
+// that time (doc/NUMERICS.md, "Solid meshes").
 #pragma once
 
 #include "narrowphase/solver/stage_one.h"
@@ -24,16 +25,17 @@ class Containment : PartOfSolver {
   void findAtStart();
   /// Whether one body of a pair may lie within the other at time t.
   bool mayBeContained(PairId pair, double t);
-  /// This is one of the pairs that findAtStart() has found.
+  /// Whether the pair is one of those that findAtStart() has found.
   bool isContainedAtStart(PairId pair) const;
   int size() const { return contained_.size(); }
   PairId pair(int i) const { return contained_[i].pair; }
-  /// A body that lies within another one at t = 0 is in contact there, but for the initial contacts that are ignored.
+  /// Records the contacts at t = 0 of the pairs found, but for those that are ignored. With Query::every_pair the
+  /// entries of these pairs in `open` are closed.
   void report(Buffer<Entry>& open);
 
  private:
   bool isSolid(const PairParts& bodies) const { return body(bodies.a).space || body(bodies.b).space; }
-  engine::Containment contained(PairId pair, double t);
+  engine::ContainmentVerdict contained(PairId pair, double t);
   void testAtStart(PairId pair);
 
   RelativeMotions& motions_;
@@ -43,8 +45,8 @@ class Containment : PartOfSolver {
   Buffer<LeafContact> contained_;  ///< at t = 0
 };
 
-/// Whether one body of a pair, whose surfaces may well be apart, lies within the other at time t.
-[[gnu::noinline]] inline engine::Containment Containment::contained(PairId pair, double t) {
+/// Whether one body of a pair lies within the other at time t; their surfaces may be apart.
+[[gnu::noinline]] inline engine::ContainmentVerdict Containment::contained(PairId pair, double t) {
   const Seen seen = motions_.of(pair, TimeBatch::around(t));
   const PairParts bodies = problem().parts(pair);
   const Body &a = body(bodies.a), &b = body(bodies.b);
@@ -55,23 +57,24 @@ class Containment : PartOfSolver {
   // 4: points are seen both ways, and as far from the frames as both bodies are large (doc/NUMERICS.md).
   pose.error = 4 * (seen->poseError() + m.rem_c + m.rem_R * (a.tree->extent + b.tree->extent));
   ++statistics().contact_proofs;
-  engine::Containment found;
+  engine::ContainmentVerdict found;
   problem().contained(a, b, pose, found);
-  FCL_ARTIC_ASSERT(found.verdict >= engine::Containment::kNone && found.verdict <= engine::Containment::kCertain);
+  FCL_ARTIC_ASSERT(found.verdict >= engine::ContainmentVerdict::kNone &&
+                   found.verdict <= engine::ContainmentVerdict::kCertain);
   return found;
 }
 
 inline bool Containment::mayBeContained(PairId pair, double t) {
   return problem().contained && isSolid(problem().parts(pair)) &&
-         contained(pair, t).verdict != engine::Containment::kNone;
+         contained(pair, t).verdict != engine::ContainmentVerdict::kNone;
 }
 
 inline void Containment::testAtStart(PairId pair) {
   if (!isSolid(problem().parts(pair))) return;
-  const engine::Containment found = contained(pair, 0);
-  if (found.verdict == engine::Containment::kNone) return;
+  const engine::ContainmentVerdict found = contained(pair, 0);
+  if (found.verdict == engine::ContainmentVerdict::kNone) return;
   LeafContact& contact = contained_.grow() = contactOf(problem(), pair, -1, -1);
-  contact.certain = found.verdict == engine::Containment::kCertain;
+  contact.certain = found.verdict == engine::ContainmentVerdict::kCertain;
   contact.t_upper = contact.certain ? 0 : 1;
   contact.feature = engine::kVolume;
   for (int k = 0; k < 3; ++k) {
@@ -80,8 +83,8 @@ inline void Containment::testAtStart(PairId pair) {
   }
 }
 
-/// A box that holds a body's surface holds the body. So pairs whose boxes are apart in the first lane are left out. No
-/// others are, whatever stage 1, tables or stage 2 prove of surfaces.
+/// A box that holds a body's surface holds the body. So only pairs whose boxes are apart in the first lane are left
+/// out. All others are tested, whatever stage 1, tables or stage 2 prove of their surfaces.
 [[gnu::noinline, gnu::cold]] inline void Containment::findAtStart() {
   contained_.clear();
   if (query().check_scene && problem().obstacle_tree) {

@@ -28,7 +28,7 @@ FCL_ARTIC_INLINE Proportions proportionsOf(const Node& node) {
 /// by side: a motion wider than they are has them all in each other's way, however long they are. Measured: the slowest
 /// queries of two tubes of slivers take a sixth of the time, nothing else changes but slivers against a ball, which
 /// take longer by two thirds.)
-FCL_ARTIC_INLINE bool isSmaller(const Node& node, double motion) {
+FCL_ARTIC_INLINE bool isSmallerThanMotion(const Node& node, double motion) {
   constexpr double kThin = 0.125;  // as part of the radius
   if (node.radius < motion) return true;
   const Proportions box = proportionsOf(node);

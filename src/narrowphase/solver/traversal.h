@@ -15,13 +15,14 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// A node that is larger than its partner by this factor is not examined in the partner's frame, unless its box there
-/// is known already. Measured: a quarter less time for a link amid one large mesh, nothing elsewhere; 1 is slower.
+/// One of two nodes is always tested by its swept box. So is the other one, unless its radius is this many times its
+/// partner's or more and its swept box is not there yet. Measured: a quarter less time for a link amid one large mesh,
+/// no change elsewhere; 1 is slower.
 constexpr double kLargerNode = 2;
 /// Nodes smaller than this part of the motion are split in time before they are split in space. Measured: anything from
 /// 0.35 to 1.4 is within 30 %.
 constexpr double kSplitTime = 0.7;
-/// Hulls that overlap in this number of lanes are left to their triangles.
+/// Once GJK claims overlap of two hulls in this number of lanes, the rest is left to their triangles.
 constexpr int kMaxHullOverlaps = 2;
 /// The same for convex parts. There are many of them, and their own parts come next.
 constexpr int kMaxPartOverlaps = 1;
@@ -46,10 +47,10 @@ FCL_ARTIC_INLINE int middleLane(unsigned lanes) {
 
 /// The purpose of a traversal.
 enum class Aim {
-  split,   ///< to find what to look at in narrower lanes: ends early where that is more promising
-  leaves,  ///< the same, down to the leaves: lanes are as narrow as they get
-  poses,   ///< as `leaves`, at single poses, for contacts to be proven: ends where many leaves can't be decided
-  decide,  ///< only which lanes are free matters
+  split,      ///< to find what to look at in narrower lanes: ends early where that is more promising
+  leaves,     ///< the same, down to the leaves: lanes are as narrow as they get
+  poses,      ///< as `leaves`, at single poses, for contacts to be proven: ends where many leaves can't be decided
+  freeLanes,  ///< only which lanes are free matters
 };
 
 /// The search for directions that certify whole lanes. It pays for bodies' hulls, not for parts of them, nor for
@@ -68,7 +69,7 @@ struct DirectionSearch {
   LaneSearch lanes = {};
 };
 
-/// One pair over one batch, in the lanes that Horizon watches.
+/// One pair over one batch, in the live lanes of Horizon's batch.
 class Traversal : PartOfSolver {
  public:
   Traversal(SearchState& state, PoseProofs& proofs)
@@ -80,7 +81,7 @@ class Traversal : PartOfSolver {
       stack.clear();  // if the caller's progress threw, entries of the last query are still here
     free_nodes_.clear();
     simplices_.begin();
-    across_rods_.begin();
+    rods_throttle_.begin();
     roots_tested_ = -1;
   }
   /// Nodes of a pair's still body, a bit each, that are proven free over the whole motion (engine::CullCandidate).
@@ -127,7 +128,7 @@ class Traversal : PartOfSolver {
   PoseProofs& proofs_;
 
   HullSimplices simplices_;
-  EffortThrottle across_rods_;
+  EffortThrottle rods_throttle_;
   struct FreeNodes {
     PairId pair;
     const std::uint64_t* nodes;
@@ -152,9 +153,9 @@ inline unsigned Traversal::nodesMayTouch(Seen seen, int a, int b, unsigned mask)
     mask &= ~box(other);
   if (!mask) return 0;
   if (A.radius >= engine::kUnbounded || B.radius >= engine::kUnbounded) return mask & ~apartFromUnbounded(seen, a, b);
-  if (across_rods_.mayTry()) {
+  if (rods_throttle_.mayTry()) {
     mask &= ~apartAcrossRods(seen, A, B, mask);
-    across_rods_.count(!mask);
+    rods_throttle_.count(!mask);
   }
   return mask;
 }
@@ -246,8 +247,9 @@ inline unsigned Traversal::notSeparated(Seen seen, const PiecePair& pieces, unsi
   return mask;
 }
 
-/// A small body lies within a large mesh's bounds, halfway, and its hull in that one's: hulls would say nothing.
-/// (Hulls without their roundings: with them GJK may end at a face, from which no depth is known.)
+/// Whether, halfway through the batch, a small body's middle lies in the box of a large mesh and their hulls are in
+/// each other: then hulls would say nothing. (The hulls are taken without their radii: with them GJK may end at a face,
+/// from which no depth is known.)
 inline bool Traversal::isWithin(Seen seen) {
   for (int s = 0; s < 2; ++s) {
     const Node &large = seen->still(s).nodes[0], &small = seen->moving(s).nodes[0];
@@ -320,7 +322,7 @@ inline unsigned Traversal::leavesMayTouch(Seen seen, int piece_a, int piece_b, u
   });
 }
 
-/// Whether a node of a pair's still body is proven free over the whole motion.
+/// Whether an advisor has proven a node of a pair's still body free over the whole motion.
 inline bool Traversal::isKnownFree(PairId pair, int node) const {
   bool free = false;
   for (int i = 0; i < free_nodes_.size(); ++i) {
@@ -330,7 +332,7 @@ inline bool Traversal::isKnownFree(PairId pair, int node) const {
 }
 
 inline void Traversal::descend(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open) {
-  FCL_ARTIC_ASSERT(aim != Aim::decide);
+  FCL_ARTIC_ASSERT(aim != Aim::freeLanes);
   traverse(seen, root, aim, open);
 }
 
@@ -338,11 +340,11 @@ inline unsigned Traversal::blockedLanes(Seen seen, unsigned mask) {
   FCL_ARTIC_ASSERT(horizon_.live() == kAllLanes && horizon_.contactLane() == 0);  // all are looked at
   mask = nodesMayTouch(seen, 0, 0, mask);
   if (mask) mask = hullsMayTouch(seen, mask, false, {}).mask;
-  return mask ? traverse(seen, {seen->pair(), 0, 0, mask}, Aim::decide, undecided_) : 0;
+  return mask ? traverse(seen, {seen->pair(), 0, 0, mask}, Aim::freeLanes, undecided_) : 0;
 }
 
-/// Dual traversal. Entries that stay undecided are appended to `open`. With Aim::decide none is: the lanes that are not
-/// proven free are returned.
+/// Dual traversal. Entries that stay undecided are appended to `open`. With Aim::freeLanes none is: the lanes that are
+/// not proven free are returned.
 inline unsigned Traversal::traverse(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open) {
   FCL_ARTIC_ASSERT(root.pair == seen->pair() && root.mask != 0 && root.mask <= kAllLanes);
   const Node *A = seen->a().nodes, *B = seen->b().nodes;
@@ -365,7 +367,7 @@ inline unsigned Traversal::traverse(Seen seen, const Entry& root, Aim aim, Buffe
     }
     held = false;
     if (const unsigned later = e.mask & ~(horizon_.live() & ~blocked)) {
-      if (aim == Aim::decide) {
+      if (aim == Aim::freeLanes) {
         blocked |= later;
       } else {
         open.push({e.pair, e.a, e.b, later, true});
@@ -380,15 +382,15 @@ inline unsigned Traversal::traverse(Seen seen, const Entry& root, Aim aim, Buffe
     if (!e.mask) continue;
     const Node &x = A[e.a], &y = B[e.b];
     if (x.isLeaf() && y.isLeaf()) {
-      e.mask = leavesMayTouch(seen, x.piece(), y.piece(), e.mask, aim != Aim::decide);
+      e.mask = leavesMayTouch(seen, x.piece(), y.piece(), e.mask, aim != Aim::freeLanes);
       if (!e.mask) continue;
-      if (aim == Aim::decide) {
+      if (aim == Aim::freeLanes) {
         blocked |= e.mask;
       } else {
         open.push(e);
       }
-    } else if ((aim != Aim::decide && e.mask == horizon_.contactLane()) ||
-               (isSmaller(x, split_time) && isSmaller(y, split_time)) || open.size() > max_open) {
+    } else if ((aim != Aim::freeLanes && e.mask == horizon_.contactLane()) ||
+               (isSmallerThanMotion(x, split_time) && isSmallerThanMotion(y, split_time)) || open.size() > max_open) {
       open.push(e);
     } else {
       const bool split_a = y.isLeaf() || (!x.isLeaf() && x.radius > y.radius);
