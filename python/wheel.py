@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The build back end of pyproject.toml (PEP 517): `pip install .` builds the module with CMake and packs what
-`cmake --install --component python` installs. It needs nothing but Python, CMake and what README names, so that it works
-without a network; CMake's own environment variables count, such as CMAKE_GENERATOR and CMAKE_CXX_COMPILER_LAUNCHER."""
+`cmake --install --component python` installs. It needs nothing but what scripts/setup installs, so that it works without
+a network; CMake's own environment variables count, such as CMAKE_GENERATOR and CMAKE_CXX_COMPILER_LAUNCHER."""
 import base64
 import hashlib
 import os
