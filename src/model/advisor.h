@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Advisors of the solver: tables of two links, grids of where balls meet, culling by visibility, or your own. An
-// advisor may clear parts of the motion in which it has proven a pair free, and may suggest where contact is likely;
-// nothing else. The solver trusts what an advisor clears, and checks what it suggests. Plain data.
+// advisor clears parts of the motion in which it has proven a pair free, and nodes of the still body's tree; it
+// suggests where contact is likely. The solver trusts what is cleared. A contact that is suggested counts only if the
+// solver proves it. One advisor clears without a proof: visibility::DrawingPass::assume(). Its answer counts only if
+// draw() proves afterwards that all that was cleared is free. Plain data.
 #pragma once
 
 #include <cstdint>
@@ -45,17 +47,18 @@ struct LikelyContact {
 struct Advisor {
   void* self = nullptr;
   /// One byte per link pair; bit k: the pair is proven free over the part [k/8, (k+1)/8] of this motion. Null: nothing
-  /// is known. Called when the solver reaches the link pairs, which a contact with an obstacle may make needless. The
-  /// array must stay valid until the solver returns.
+  /// is known. Called when the solver comes to the link pairs; not called if a contact with an obstacle has ended the
+  /// query before. The array must stay valid until the solver returns.
   const std::uint8_t* (*freeParts)(void* self) = nullptr;
-  /// The same for one link pair, for answers that cost more: called for the pairs that stage 1's own bounds leave.
+  /// The same bits for one link pair, for answers that cost more: called only for pairs that stage 1's own bounds
+  /// leave.
   unsigned (*freePartsOf)(void* self, std::int32_t link_pair) = nullptr;
   /// Called between stage 1 and the first batch. May clear bits of `lanes` in which a pair is proven free, and set
   /// `free_nodes`. Pairs with the same `swept` lie together and share a frame. Pairs of links and still obstacles come
   /// first, ordered by link, then the others in the order of their numbers.
   void (*clear)(void* self, const Problem& problem, const SweptLink* links, CullCandidate* pairs,
                 std::int32_t num_pairs) = nullptr;
-  /// Where balls inside links are likely to meet. Called with Query::any, before all else.
+  /// Where balls inside links are likely to meet. Called only with Query::any, before stage 1.
   const LikelyContact* (*suggest)(void* self, std::int32_t& count) = nullptr;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// All that stays the same from query to query: bodies, pairs, margins. Plain data; its owner is Setup.
+// All that stays the same from query to query: bodies and pairs. Plain data; its owner is Setup.
 #pragma once
 
 #include <cstdint>

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The result that a query leaves in the caller's hands when it can't answer: nothing that was true of another
-// question. Every public query that writes to a result goes through one of these functions.
+// If a query can't answer, it leaves a result that claims nothing. So no answer to an earlier question stays in the
+// caller's hands. Every public query that writes to a result goes through one of these functions.
 #pragma once
 
 #include "fcl_artic/result.h"
 
 namespace fcl_artic {
 
-/// Nothing is proven of a motion over [begin, end]. Memory is kept.
+/// Makes a result that claims nothing of a motion over [begin, end]. Its vectors keep their memory; its statistics
+/// stay.
 inline void withdrawClaims(CertifiedResult& result, double begin, double end) {
   result.status = Status::undecided;
   result.t_lower = begin;
@@ -23,13 +24,14 @@ inline void withdrawClaims(CertifiedResult& result, double begin, double end) {
   result.certificate.reset();
 }
 
-/// The same, and no work has been done.
+/// The same, and resets the statistics.
 inline void claimNothing(CertifiedResult& result, double begin = 0, double end = 1) {
   withdrawClaims(result, begin, end);
   result.statistics = QueryStatistics();
 }
 
-/// Runs a query. When it throws, reset() is called: whatever the query has written by then.
+/// Runs a query. If it throws, reset() is called, whatever the query has written by then, and the exception is passed
+/// on.
 template <class Reset, class Query>
 auto resetUnlessAnswered(Reset&& reset, Query&& query) {
   try {
@@ -40,8 +42,8 @@ auto resetUnlessAnswered(Reset&& reset, Query&& query) {
   }
 }
 
-/// Runs a query of a motion over [begin, end], which claims nothing from before it begins until it has answered. (Its
-/// statistics are left to the answer: resetting them takes as long as a small query's fortieth.)
+/// Runs a query of a motion over [begin, end]. Until the query has answered, the result claims nothing. (The query sets
+/// its statistics anew: to reset them before would take a fortieth of a small query's time.)
 template <class Query>
 void answerOrClaimNothing(CertifiedResult& result, double begin, double end, Query&& query) {
   withdrawClaims(result, begin, end);

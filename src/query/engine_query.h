@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The things that all queries share on their way to the engine and back: memory, request, statistics, contacts of
-// triangles.
+// Shared by all queries on their way to the engine and back: memory, the request, statistics, the order of contacts.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +17,7 @@
 
 namespace fcl_artic {
 
-/// Memory of one query at a time. Nothing in it reaches the next answer.
+/// Memory that one query uses at a time. No answer depends on what earlier queries have left in it.
 class QueryWorkspace {
  public:
   engine::EngineWorkspace engine;
@@ -26,14 +25,14 @@ class QueryWorkspace {
     if (!redon_) redon_ = std::make_unique<redon::Workspace>();
     return *redon_;
   }
-  engine::Body bodies[2];                      ///< of a pair query: their trees, all else as it is at first
+  engine::Body bodies[2];                      ///< of a pair query: only their trees are set
   FrameSweep sweep;                            ///< of a pair query
   std::vector<double> coefficients;            ///< of its variables
   std::vector<std::uint8_t> link_free;         ///< of a manager's query: link pairs that are proven apart
-  std::vector<engine::LikelyContact> likely;   ///< the same
-  std::vector<std::uint8_t> scene_allowed;     ///< the same: with pairs that are left out
-  std::vector<std::uint8_t> link_allowed;      ///< the same
-  std::vector<engine::BoundedSource> sources;  ///< of its bounded motions
+  std::vector<engine::LikelyContact> likely;   ///< of a manager's query
+  std::vector<std::uint8_t> scene_allowed;     ///< of a manager's query: with pairs that are left out
+  std::vector<std::uint8_t> link_allowed;      ///< likewise
+  std::vector<engine::BoundedSource> sources;  ///< of a query's bounded motions
 
  private:
   friend class WorkspaceLoan;
@@ -57,7 +56,8 @@ class WorkspaceLoan {
   QueryWorkspace* workspace_;
 };
 
-/// The margins that a request asks for; of pairs that have none of their own. Nothing else reads a request's margins.
+/// The margins that a request asks for, for pairs that have none of their own. No other function reads a request's
+/// margins.
 /// @throws std::invalid_argument for a margin that is negative or not finite, or when their sum is not finite.
 engine::Margins marginsOf(const Tolerances& request);
 
@@ -66,14 +66,15 @@ engine::Margins marginsOf(const Tolerances& request);
 engine::Query makeQuery(const CertifiedPairRequest& request);
 
 QueryStatistics statisticsOf(const engine::Statistics& statistics);
-/// Adds one query's work to a sum: all but the counts of pairs and the total time, which the asker knows better.
+/// Adds one query's work to a sum: all but the counts of pairs and the total time, which the caller sets itself.
 void addWork(const QueryStatistics& s, QueryStatistics& sum);
 /// The part of a query's work that a work budget counts.
 std::uint64_t countedWork(const QueryStatistics& s);
 
-/// Puts a manager's contacts in the order of their t_lower and leaves the first one of every two bodies: a link may
-/// have several geometries.
-/// @param certain  of the answer: its first contact is the one that is proven first.
+/// Sorts a manager's contacts by t_lower, and keeps of every two bodies the first one. (A link may have several
+/// geometries, so two bodies may have several contacts.)
+/// @param certain  the answer's. If true, the contact that is proven first comes before all others, whatever its
+/// t_lower.
 void keepFirstOfEachPair(bool certain, std::vector<CertifiedContact>& contacts);
 
 }  // namespace fcl_artic

@@ -15,7 +15,7 @@
 
 namespace fcl_artic {
 
-/// Part of the whole trajectory's time that a piece takes.
+/// The part of the whole trajectory's time that a piece takes; the whole is [0, 1].
 inline TimePart partOfTime(const JointTrajectory& trajectory, std::size_t piece) {
   const double begin = trajectory.beginTime(), duration = trajectory.endTime() - begin;
   const auto at = [&](std::size_t k) {
@@ -24,25 +24,27 @@ inline TimePart partOfTime(const JointTrajectory& trajectory, std::size_t piece)
   return {at(piece), at(piece + 1)};
 }
 
-/// All that queries of other kinds ask of one motion, beyond the request.
+/// Settings beyond the request of a query of one motion, for trajectories, batches and clearance().
 struct ArticulatedCollisionManager::QueryContext {
-  TimePart time;            ///< of the moving obstacles' motions, over the query's [0, 1]
-  bool own_margins = true;  ///< pairs may have margins of their own; false: none has, but neighbours (clearance())
-  /// Pairs of the engine's problem: the only ones whose initial contact may be ignored; null: that of all pairs may.
+  TimePart time;            ///< the part of the moving obstacles' motions that the query's [0, 1] is
+  bool own_margins = true;  ///< pairs' own margins hold; false: those of neighbours alone (clearance())
+  /// Pairs of the engine's problem: only their initial contacts may be ignored; null: those of all pairs may.
   const std::vector<engine::PairId>* may_ignore = nullptr;
-  /// Pairs of the problem as the request's scope leaves it that are not checked, as if they were allowed; null: none.
+  /// Pairs that are not checked, as if they were allowed; null: none. Their numbers are of the problem that the
+  /// request's scope leaves.
   const std::vector<engine::PairId>* left_out = nullptr;
   std::vector<engine::PairId>* never_apart = nullptr;  ///< out: ignored pairs that have not separated by t = 1
   /// All that a certificate says beyond the public answer.
   struct Details {
     std::vector<engine::Ignored> ignored;        ///< all ignored pairs
-    std::optional<engine::LeafContact> contact;  ///< proven, the first one
+    std::optional<engine::LeafContact> contact;  ///< the first contact, if it is proven
   };
   Details* details = nullptr;  ///< out
-  /// Advises the solver in place of the request's stage 2, with Method::standard; null: the request's.
+  /// The advisor that takes the place of the request's stage 2, with Method::standard only; null: the request's
+  /// stage 2.
   const engine::Advisor* stage2 = nullptr;
 
-  /// A query of clearance(): no pair has a margin of its own, but neighbours.
+  /// The settings of a query of clearance(): pairs' own margins do not hold, but neighbours' do.
   static QueryContext ofClearance(const std::vector<engine::PairId>& left_out) {
     QueryContext context;
     context.own_margins = false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The options of a request, once: the program's options, Python's keywords with their docstrings, and JSON go by this
-// table, and JSON by the names of their values.
+// The one table of a request's options: the program's options, Python's keywords with their docstrings, and JSON are
+// made from it. The names of enumerations' values in JSON are here too.
 #pragma once
 
 #include "fcl_artic/request.h"
@@ -24,7 +24,7 @@ constexpr NamedValue<VisibilityMode> kVisibilityModes[] = {{VisibilityMode::off,
 constexpr NamedValue<MotionEnclosure> kMotionEnclosures[] = {{MotionEnclosure::intervalChain, "interval_chain"},
                                                              {MotionEnclosure::meanValue, "mean_value"},
                                                              {MotionEnclosure::taylor, "taylor"}};
-// Found by the type of their values.
+// All names of an enumeration, found by the type of the argument.
 constexpr const auto& namesOf(ContactMode) {
   return kContactModes;
 }
@@ -47,9 +47,10 @@ const char* nameOf(E value) {
 }
 
 struct RequestOption {
-  const char* name;     ///< in Python and in JSON
-  const char* program;  ///< of the program's option; of a flag that is on by default, what switches it off; null: none
-  const char* help;     ///< of what is on by default, an imperative
+  const char* name;  ///< in Python and in JSON
+  /// The program's option; for a flag that is on by default, the one that switches it off; null: none.
+  const char* program;
+  const char* help;  ///< for a flag that is on by default, an imperative
 };
 
 /// Calls visit(option, member) for each, in the order in which they are listed.

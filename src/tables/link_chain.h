@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Two links and the joints between them, apart from the robot that they belong to. A chain holds the engine's problem
+// Two links and the joints between them, without the rest of their robot. A chain holds the engine's problem
 // of this one pair, the whole ranges of its variables, and points that bound both bodies. RangeProof searches these
 // ranges.
 #pragma once
@@ -16,21 +16,23 @@
 
 namespace fcl_artic {
 
-/// The values of a variable, as far as proofs for its whole range go. These are its limits and a little more, as
-/// joints may stand at them; all values, where an angle has no limits. Nothing (lower > upper) for a variable without
-/// bounds: a slide without limits, the variables of planar and floating joints.
+/// The values of a variable that proofs for its whole range cover:
+/// - its limits and a little more, as a joint may stand at a limit;
+/// - for an angle without limits, all values;
+/// - for a slide without limits, and for the variables of planar and floating joints, none (lower > upper).
 ValueRange wholeRange(const KinematicTree& tree, int variable);
 
 /// The kinematic chain from one link (A) to another one (B).
 class LinkChain {
  public:
-  /// Steps at both ends of the chain that are replaced, together with the links they carry, by a ball about the joint
-  /// next to them. It holds the link for all values of these steps' variables (doc/NUMERICS.md, Lemma 10). Without them
-  /// there is less to prove: fewer variables, of bodies that are larger.
+  /// The numbers of steps that are cut off at the ends of the chain. At each end a ball takes the place of these steps
+  /// and of the link. Its middle is the origin of the cut step that is next to the rest. It holds the link for all
+  /// values of these steps' variables (doc/NUMERICS.md, Lemma 10). A proof of the rest is easier: the bodies are
+  /// larger, but the variables are fewer.
   struct Cut {
     std::size_t steps_at_a, steps_at_b;
   };
-  /// Points about a body and, of the last two, a radius. The body lies in the hull of the first eight, and in the hull
+  /// Points and a radius that bound a body. The body lies in the hull of the first eight, and in the hull
   /// of the last two grown by the radius.
   struct Outline {
     Eigen::Matrix<double, 3, 10> points;
@@ -49,14 +51,14 @@ class LinkChain {
   LinkChain& operator=(const LinkChain&) = delete;
 
   /// Whether the ranges of all variables are bounded, and all joints turn about or slide along an axis. If not, nothing
-  /// can be proven, and nothing else may be asked for but variables(), which are none then.
+  /// can be proven, and nothing else but variables() may be asked for.
   bool bounded() const { return bounded_; }
   /// The tree's variables in the chain, each once, from A on.
   const std::vector<int>& variables() const { return variables_; }
   /// Cuts that leave less to prove, the fewest variables first; none where a mesh is a solid.
   std::vector<Cut> cuts() const;
 
-  /// From A on; SweepStep::variable counts in variables().
+  /// The steps from A on. SweepStep::variable is an index into variables().
   const std::vector<engine::SweepStep>& path() const { return path_; }
   /// Whether no other step is driven by this step's variable.
   bool drivesOneStep(const engine::SweepStep& step) const {
@@ -71,9 +73,10 @@ class LinkChain {
   /// A in the base frame, before the first step; B in the last step's frame.
   const Outline& outlineA() const { return outline_a_; }
   const Outline& outlineB() const { return outline_b_; }
-  /// m: rounding in any pose of the chain.
+  /// m: bound on rounding in any pose of the chain.
   double pad() const { return pad_; }
-  /// m: the radii of both balls that stand for links, whose bodies are the balls' middles. It is added to each margin.
+  /// m: sum of the radii of the balls that stand for links. In problem() such a body is the ball's middle alone, so the
+  /// caller adds this to each margin.
   double ballRadii() const { return ball_radii_; }
 
  private:
@@ -87,7 +90,7 @@ class LinkChain {
   engine::SweepView sweep_;
   engine::LinkPair pair_;
   engine::Problem problem_;
-  engine::Body bodies_[2];  ///< where a ball stands for one of them: the problem's
+  engine::Body bodies_[2];  ///< the problem's, if a ball stands for one of them
   std::vector<int> variables_;
   std::vector<int> num_steps_;  ///< by variable: how many steps it drives
   std::vector<ValueRange> ranges_;

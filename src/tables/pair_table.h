@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Two links whose relative pose depends on two joint variables at most, or on a third one of little effect. The table
-// says where among these the links are apart, proven once per robot. A query whose motion stays there need not look at
-// the pair.
+// Two links whose relative pose depends on two joint variables at most, and perhaps on a third one of little effect.
+// The table says for which values of these variables the links are apart, proven once per robot. A query whose motion
+// stays within such values need not look at the pair.
 //
 // The variables' range is cut into cells. A cell counts as proven when the engine has proven the links more than the
 // margin apart for all values in it (doc/NUMERICS.md, section 10). A summed-area table answers for any box of cells by
@@ -32,8 +32,8 @@ class PairTable {
     bool wraps = false;  ///< the cells are a full turn
     double upper() const { return lower + cells * width; }
   };
-  /// The table's variables with their cells, by how far they take the link, the farthest first. They are chosen first
-  /// and as a whole; what is proven of a cell, and how far a link goes within it, is worked out of the finished value.
+  /// The table's variables with their cells. The variable that moves the link farthest comes first. All are chosen
+  /// before anything is proven of a cell, and do not change then.
   struct Cells {
     int count = 0;
     Axis axes[3];
@@ -42,7 +42,7 @@ class PairTable {
   /// @param sweep  that the pair refers to.
   /// @param margin  that the links are proven to keep.
   /// @return null where there is nothing to look up:
-  ///   - more variables,
+  ///   - the pose depends on more variables,
   ///   - joints of other kinds than turns about and slides along an axis, a slide without limits,
   ///   - no cell that could be proven.
   static std::shared_ptr<const PairTable> build(const KinematicTree& tree, const engine::SweepView& sweep,
@@ -72,8 +72,9 @@ class PairTable {
 
   const Cells cells_;
   const double margin_;
-  /// sums_[p * plane_ + i * stride_ + j]: of the third axis's cell p, cells (i', j') with i' < i, j' < j that are not
-  /// proven, modulo 2^16. An axis that wraps is there twice, so that every box of less than a turn is one piece.
+  /// sums_[p * plane_ + i * stride_ + j]: the number, modulo 2^16, of cells (i', j') of the third axis's cell p with i'
+  /// < i, j' < j that are not proven. An axis that wraps is there twice, so that every box of less than a turn is one
+  /// piece.
   std::vector<std::uint16_t> sums_;
   std::size_t stride_ = 1, plane_ = 1;
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Two links over the whole ranges of all joint variables between them, however many: proven apart, or where they touch.
-// The ranges are cut into boxes, as finely as it takes; the engine proves one box at a time (doc/NUMERICS.md,
-// section 10, Lemmas 8 and 10).
+// Proves two links apart for all values of the joint variables between them, however many, or finds values at which the
+// proof fails. The variables' ranges are cut into boxes, as finely as the proof needs; the engine proves one box at a
+// time (doc/NUMERICS.md, section 10, Lemmas 8 and 10).
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,8 @@ class RangeProof {
   /// @param problem, pair  must stay as they are as long as this lives.
   /// @param margin  m, that the links are proven to keep.
   /// @param workspace  of this thread.
-  /// @param cut  one of cuts(): all below is of the balls then. If the balls are proven apart, so are the links.
+  /// @param cut  one of cuts(): all functions below are about the links as it leaves them, of which balls replace one
+  /// or both. If these are proven apart, so are the links.
   RangeProof(const KinematicTree& tree, const engine::Problem& problem, const engine::LinkPair& pair, double margin,
              engine::EngineWorkspace& workspace, const Cut& cut = {0, 0});
   RangeProof(const RangeProof&) = delete;
@@ -34,27 +35,27 @@ class RangeProof {
   const std::vector<int>& variables() const { return chain_.variables(); }
   std::vector<Cut> cuts() const { return chain_.cuts(); }
 
-  /// The certain state of the links where the variables have given values.
+  /// The state of the links at given values of the variables, as far as it is proven.
   enum class Contact : std::uint8_t {
     none,     ///< more than the margin apart
     touch,    ///< in contact, or nearer than the margin
     unknown,  ///< too near to decide
   };
-  /// @param margin  m, in place of the one that is proven.
+  /// @param margin  m, in place of the constructor's.
   Contact at(const std::vector<double>& values, double margin);
 
-  /// Goes from one configuration to others in which the links are nearer, as long as that gets on.
-  /// @param within  what each variable may be; finite.
+  /// Goes from one configuration to others in which the links are nearer, until a step gains little.
+  /// @param within  the range in which each variable stays; finite.
   /// @param margin  m: links that come nearer count as touching.
   /// @param[in,out] values  of each variable.
-  /// @return at the new values: the margin, if the links certainly touch; else an upper bound of their distance, m,
-  /// more than the margin; infinite, where none is known.
+  /// @return m, at the new values: `margin`, if the links certainly touch; else an upper bound of their distance, more
+  /// than `margin`, or infinity if none is known.
   double comeNearer(const std::vector<ValueRange>& within, double margin, std::vector<double>& values);
 
   struct Result {
     bool apart = false;          ///< proven, for all values in the ranges
     std::uint64_t work = 0;      ///< tests of nodes and leaves, and kQueryWork for each query
-    std::vector<double> values;  ///< not apart: where the proof failed, a value of each variable
+    std::vector<double> values;  ///< not apart: a value of each variable, where the proof failed
   };
   /// Proves the links apart over the whole ranges, with `work` at most; or gives up.
   Result prove(std::uint64_t work);
@@ -67,11 +68,11 @@ class RangeProof {
   using Box = std::vector<ValueRange>;
   struct BoxResult {
     bool apart = false, give_up = false, out_of_work = false;
-    std::size_t split = 0;      ///< else: the variable to halve
-    std::vector<double> where;  ///< not apart: where on the engine's way, if it was asked
+    std::size_t split = 0;      ///< none of these: the variable to halve
+    std::vector<double> where;  ///< not apart: values on the engine's motion, if the engine was asked
   };
 
-  /// A step's own motion, along and about z: of points after it, as seen from before it.
+  /// A step's own motion, along and about z. It takes coordinates in the frame after the motion to those before it.
   struct StepPose {
     double sine = 0, cosine = 1, slide = 0;
 
@@ -81,18 +82,19 @@ class RangeProof {
     void apply(Points& points) const;
   };
 
-  /// Points of both bodies, A's in the base frame and B's in the last step's, that were found near each other: they
-  /// show at once that a box can't be proven. (A guess only spares work: nothing is proven with them.)
+  /// A point of each body, A's in the base frame and B's in the last step's. They were found near each other. If they
+  /// come as near in a box, it likely can't be proven, and the engine is not asked. (That is a guess, which only spares
+  /// work: nothing is proven with them.)
   struct Witness {
     Eigen::Vector3d a, b;
     Eigen::Vector3d normal;  ///< from b to a where they were found, in the base frame; of length 0 or 1
-    double distance;         ///< of the two, there, less the balls' radii
+    double distance;         ///< m, of the two where they were found, less the balls' radii
   };
 
   void boundDisplacements(const Box& box);
   BoxResult tryBox(const Box& box, std::uint64_t work);
   void solve();
-  /// The value of a variable in the motion asked last.
+  /// The value of a variable at time t of the motion that the engine was asked about last.
   double valueAt(std::size_t variable, double t) const {
     return coefficients_[variable] + t * coefficients_[variables().size() + variable];
   }
@@ -109,7 +111,7 @@ class RangeProof {
   std::uint64_t work_ = 0;              ///< so far, as Result::work
   std::vector<StepPose> middle_poses_;  ///< by step: in the middle of the box measured last
   /// By step, of the box measured last, m: how far a point goes at most when the step leaves the middle of its range.
-  /// One is of points of A as seen from B, one of B as seen from A.
+  /// displacement_a_ is of points of A as seen from B, displacement_b_ of points of B as seen from A.
   std::vector<double> displacement_a_, displacement_b_;
   static constexpr std::size_t kMaxWitnesses = 8;  ///< the newest are kept
   std::vector<Witness> witnesses_;

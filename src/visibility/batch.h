@@ -18,15 +18,16 @@ struct Volume {
   double radius = 0;  ///< m
 };
 
-/// A box in the world; its views along x, y and z are one tile each.
+/// A box in the frame of its volumes. Its views along x, y and z are one tile each.
 struct Window {
   double lo[3], hi[3];
 };
 
-/// How footprints and depth bounds are grown. All but the defaults is wrong: tests show that they notice.
+/// How footprints and depth bounds are grown. Only with the defaults do executors prove anything. Tests use other
+/// values, to show that they notice wrong executors.
 struct Growth {
   bool footprint = true, depth = true;
-  /// Beyond the pixel's half width, in pixels: for snapping and rounding. Below 0: what the executor needs.
+  /// Growth beyond half a pixel, in pixels: for snapping and rounding. Below 0: as much as the executor needs.
   double eta = -1;
   Growth orOwn(double needed) const { return {footprint, depth, eta < 0 ? needed : eta}; }
 };
@@ -44,12 +45,11 @@ struct Batch {
 
   int resolution = 32;  ///< pixels along a tile's side
   VisibilityRule rule = VisibilityRule::intervals;
-  /// Only whether a group survives is asked: all of its objects may be reported once one of them survives.
+  /// The caller asks only whether a group survives: if one of its objects does, the executor may report all of them so.
   bool groups_only = false;
   Growth growth;
   std::vector<double> points;
-  /// A point that a swept volume of a window and an object of this window share lies in the window, or the window is
-  /// wrong.
+  /// A window must hold every point that one of its swept volumes has in common with one of its objects.
   std::vector<Window> windows;
   std::vector<SweptVolume> swept;
   std::vector<Object> objects;  ///< those of a group lie together and share a window; groups are numbered from 0
@@ -72,7 +72,7 @@ class Executor {
  public:
   virtual ~Executor() = default;
   /// @param[out] may  one entry per object: 0 is a proof that it overlaps none of the swept volumes of its window.
-  /// @throws std::runtime_error where the executor fails: nothing is known then.
+  /// @throws std::runtime_error if the executor fails: then nothing is known.
   virtual void run(const Batch& batch, std::vector<std::uint8_t>& may) = 0;
 };
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Whether stage 2 pays, and by which executor (doc/VISIBILITY.md, "Automatic"): by what queries cost with it and
-// without. Only time depends on it, no answer does. It has no clock: callers pass the times.
+// Chooses whether queries use stage 2, and by which executor, from the times that they take with it and without
+// (doc/VISIBILITY.md, "Automatic"). No answer depends on the choice, only its time does. It has no clock: callers pass
+// the times.
 #pragma once
 
 #include <atomic>
@@ -29,30 +30,30 @@ struct TrialPermit {
 
 /// The cost of a query both ways, µs; or of several queries together.
 struct TrialCosts {
-  double with_us, without_us;  ///< with: the second solve included, where it takes one; making an executor is not
-  double stage_us;             ///< of with_us, what the stage itself took
-  double extra_us;             ///< beyond what was chosen anyway, all included
+  double with_us, without_us;  ///< with_us: includes the second solve, if there is one, but no making of an executor
+  double stage_us;             ///< the part of with_us that the stage itself took
+  double extra_us;             ///< time beyond that of the way that was chosen anyway; making an executor included
   bool telling;                ///< the stage had something to do
 };
 
 /// One for each manager and solver, shared by its threads.
 class Choice {
  public:
-  /// @param making_us  what making the culler's own executor may take; below 0: there is none but cpu.
+  /// @param making_us  the time that making the culler's own executor may take; below 0: the culler has cpu only.
   explicit Choice(double making_us = -1) : making_us_(making_us) {}
 
-  /// The executor that takes the least time as far as trials have shown; none until they have shown another one.
+  /// The executor that takes the least time as far as trials have shown; `none` until trials show that one saves time.
   ExecutorKind best() const { return best_.load(std::memory_order_relaxed); }
-  /// Whether to measure the time of what is asked next, one query of kMeasured: clocks take time too. (A prime: callers
-  /// may ask in turns.)
+  /// Whether to measure the time of the next query: of one in kMeasured, as clocks take time too. (kMeasured is a
+  /// prime: callers may repeat queries in a fixed order.)
   bool measuresNext() { return counter_.fetch_add(1, std::memory_order_relaxed) % kMeasured == 0; }
-  /// Adds the time of queries that were measured, of a trial that of what was chosen.
-  /// @param stand_for  how many times as many they stand for.
+  /// Adds the time of queries that were measured; for a trial, that of the way that was chosen.
+  /// @param stand_for  each measured query stands for this many.
   void addQueries(double us, double queries = 1, double stand_for = kMeasured);
   /// Permits a trial, or none. Trials take at most kShare of the time of all queries, the one at hand included. They
-  /// take less where they have shown that the stage is far from paying.
-  /// @param own_is_made  an executor of the culler's own is ready. Before, it is tried only where the trials of cpu
-  /// show that enough would be saved if drawing took no time.
+  /// take less if they have shown that the stage is far from paying.
+  /// @param own_is_made  whether an executor of the culler's own is ready. If none is, one is tried only if trials of
+  /// cpu show that it would save enough if its drawing took next to no time.
   TrialPermit mayTry(bool own_is_made, double queries = 1);
   /// Adds what a trial has shown. One that ended in an exception is not added: its time stays reserved.
   void addTrial(const TrialPermit& permit, const TrialCosts& trial, double queries = 1);
@@ -66,7 +67,7 @@ class Choice {
     double cost_us;                                     ///< that a query's trial is expected to take
     double spent_us = 0;                                ///< by trials
     double on_us = 0, off_us = 0, stage_us = 0, n = 0;  ///< sums over trials; old ones are forgotten
-    int trials = 0;                                     ///< only those whose times count
+    int trials = 0;                                     ///< only those that were telling
     bool pays() const;
     bool isFarFromPaying() const;
   };

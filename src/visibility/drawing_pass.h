@@ -2,10 +2,11 @@
 //
 // Stage 2 of many queries, drawn in one pass (doc/VISIBILITY.md, "Batches").
 //
-// Each query is solved twice at most, with one of two advisors. The first takes out all that it is asked about, and
-// keeps the volumes: the answer holds on condition that all of this is free. When all queries have been asked so, one
-// pass of drawing decides. Where the condition holds, the first answer stands. Where it does not, the second advisor
-// repeats what was proven.
+// Each query is solved twice at most. First with assume()'s advisor: it clears all candidates that stage 2 looks at,
+// without a proof, and keeps their volumes. So the first answer holds only if all of these are free. When all queries
+// have been solved so, draw() draws the volumes in one pass. If it proves all of a query's candidates free, the first
+// answer stands. If not, the query is solved again: with advise()'s advisor, which clears what is proven, or without
+// any.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +22,8 @@ namespace visibility {
 
 class DrawingPass {
  public:
-  /// Maximum number of objects of a pass, and of pixels in the views of its windows. An executor keeps some ten bytes
-  /// of each, so that both take some tens of megabytes.
+  /// A pass with so many objects, or so many pixels in the views of its windows, is full. An executor keeps some ten
+  /// bytes of each, so both take some tens of megabytes.
   static constexpr std::size_t kManyObjects = 200000, kManyPixels = std::size_t{1} << 23;
 
   /// Borrows an executor for as long as this lives.
@@ -30,31 +31,34 @@ class DrawingPass {
 
   /// Begins a new pass of queries 0 to n - 1.
   void begin(std::size_t n);
-  /// Advises query i in a way that is no proof before draw(): all candidates are cleared.
+  /// The advisor of query i's first solve. It clears without a proof all candidates that stage 2 looks at: the answer
+  /// counts only if allFree(i) after draw().
   /// @param tolerance_distance  of the query, m.
   engine::Advisor assume(std::size_t i, double tolerance_distance);
-  /// Draws the volumes of all queries so far, and reads back what is free. If the executor fails nothing is.
+  /// Draws the volumes of all queries so far, and reads back which are free. If the executor fails, nothing is proven
+  /// free.
   void draw();
   /// Number of objects that draw() has to draw.
   std::size_t numObjects() const { return loan_->batch.objects.size(); }
-  /// Whether the pass has so much that it is to be drawn before another query is asked.
+  /// Whether the pass must be drawn before another query is asked.
   bool isFull() const;
 
   // After draw():
-  /// Whether all that query i's first advisor was asked about is free: its answer stands.
+  /// Whether all that query i's first advisor cleared is proven free: then the first answer stands.
   bool allFree(std::size_t i) const { return queries_[i].free(); }
-  /// Advises query i with what is proven.
+  /// The advisor of query i's second solve: it clears what is proven free.
   engine::Advisor advise(std::size_t i);
-  /// The volumes of query i in the pass; null: nothing was looked at.
+  /// The volumes of query i in the pass; null: stage 2 looked at none of its pairs.
   const QueryVolumes* volumes(std::size_t i) const {
     const PassQuery& one = queries_[i];
     return one.asked && one.volumes.work().pairs > 0 ? &one.volumes : nullptr;
   }
-  /// Time of query i's volumes and of its part of the drawing, us; and the latter alone, which is by number of pieces.
+  /// us: the time of collecting query i's volumes and of its share of the drawing. drawingMicroseconds() is that share
+  /// alone, by the query's share of the objects.
   double microseconds(std::size_t i) const { return queries_[i].collecting_us + drawingMicroseconds(i); }
   double drawingMicroseconds(std::size_t i) const;
   const std::string& executor() const { return loan_->name; }
-  /// Whether the executor was made for this.
+  /// Whether the executor was made for this pass.
   bool made() const { return loan_.made(); }
 
  private:
@@ -63,7 +67,7 @@ class DrawingPass {
     DrawingPass* owner = nullptr;
     double tolerance_distance = 0, collecting_us = 0;
     bool asked = false, asked_again = false, drawn = false;
-    std::vector<engine::CullCandidate> candidates;  ///< as they were given, then with what is proven
+    std::vector<engine::CullCandidate> candidates;  ///< as the solver gave them; after draw() with what is proven
     QueryVolumes volumes;
     bool free() const { return !asked || (drawn && !asked_again && volumes.work().culled == volumes.work().pairs); }
   };

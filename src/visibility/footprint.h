@@ -26,7 +26,8 @@ struct DepthBounds {
   float a, b, lower, upper;
 };
 
-/// The convex region that holds the centre of every pixel whose square the volume meets, by eta inside.
+/// A convex region. It holds the centre of every pixel whose square the volume meets in the view, at a distance of at
+/// least eta from its border.
 struct Footprint {
   static constexpr int kMaxSides = 20, kMaxBounds = 7;
   int x0, x1, y0, y1;   ///< pixels, ends included; at least one
@@ -40,11 +41,11 @@ struct Footprint {
 class FCL_ARTIC_EXPORT Projector {
  public:
   enum class Outcome {
-    misses,    ///< it covers no pixel of the tile
-    mayCover,  ///< it may: the footprint says which
+    misses,    ///< the volume covers no pixel of the tile
+    mayCover,  ///< the volume may cover pixels: the footprint says which
     unusable,  ///< a number is not finite, or the window has no volume: nothing is known
   };
-  /// For the footprints to come; eta is not below 0.
+  /// Growth of the footprints made from now on; eta is not below 0.
   void setGrowth(const Growth& growth) {
     half_ = growth.footprint ? 0.5 + growth.eta : 0;
     depth_half_ = growth.depth ? 0.5 + growth.eta : 0;

@@ -13,14 +13,15 @@ namespace visibility {
 std::unique_ptr<OffscreenContext> createOsmesaContext(int major, int minor);
 std::unique_ptr<OffscreenContext> createEglContext(int major, int minor);
 
-/// Held while a context is made, used or destroyed. Mesa's software rasteriser looks through what the other contexts of
-/// a display are drawing without a lock (doc/VISIBILITY.md, "Contexts"): of ours one is at work at a time.
+/// Held while an OpenGL context is made, used or destroyed: one of the library's contexts is at work at a time. (Mesa's
+/// software rasteriser reads, without a lock, what other contexts of a display are drawing; doc/VISIBILITY.md,
+/// "Contexts".)
 std::mutex& openGlMutex();
 
 /// A library that is opened at run time, and stays open.
 class SharedLibrary {
  public:
-  /// Opens the first of these that can be. @throws std::runtime_error when none can.
+  /// Opens the first of these that can be opened. @throws std::runtime_error when none can be.
   explicit SharedLibrary(std::initializer_list<const char*> names);
   /// @throws std::runtime_error when there is no such function.
   template <class F>

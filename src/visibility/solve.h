@@ -17,27 +17,27 @@ namespace visibility {
 
 /// The work of stage 2 in a query.
 struct Report : VisibilityStatistics {
-  double making_us = 0;  ///< making an executor; not in `us`
+  double making_us = 0;  ///< time of making an executor; `us` does not include it
   std::string executor;
   std::string fallback;
 };
 
-/// One of the library's solvers, ready for its problem: answers the query, with its stage 2 (engine::Advisor).
+/// One of the library's solvers, with its problem: answers a query, and asks the query's advisors (engine::Advisor).
 using SolveFunction = std::function<void(const engine::Query& query, engine::Answer& answer)>;
 
-/// No contact, no doubt, nothing ignored: an answer that does not depend on what was taken out.
+/// Whether the answer is free, with nothing ignored: such an answer does not depend on what stage 2 has taken out.
 inline bool isPlainlyFree(const engine::Answer& answer) {
   return answer.isFree() && answer.num_ignored == 0;
 }
 
-/// Whether stage 2 has anything to do with such a query.
+/// Whether such a query is solved with stage 2.
 bool takesPart(VisibilityMode mode, const engine::Problem& problem, const engine::Query& query);
 
-/// The solver's answer; with all modes but `atOnce` bit for bit the one without stage 2. There the stage only shortens
-/// proofs that a motion is free: where it has taken something out and the answer is another one, the query is solved
-/// again without. With the stage a work budget would be enough for something else, so that a query with one is solved
-/// without the stage. With `atOnce` the answer is the first one.
-/// @param choice  of this solver: what stage 2 is worth depends on it.
+/// Answers the query. In all modes but `atOnce` the answer has the same bits as without stage 2: the stage only
+/// shortens proofs that a motion is free. If it has taken something out and the answer is not plainly free, the query
+/// is solved again without it. A query with a work budget is solved without it from the start, as a budget reaches
+/// farther with it. With `atOnce` the first answer stands, with a budget too.
+/// @param choice  that of this solver: the gain of stage 2 differs from solver to solver.
 void solve(const VisibilityCuller& culler, Choice& choice, VisibilityMode mode, const SolveFunction& solver,
            const engine::Problem& problem, engine::Query& query, engine::Answer& answer, Report& report,
            const Microseconds& now = steadyMicroseconds);

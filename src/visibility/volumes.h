@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Bodies of the engine's problem as convex solids in one frame: the world, or that of a body that moves, in which it
-// stands still.
+// Bodies of the engine's problem as convex solids in one frame: the world, or the tree frame of a body that moves,
+// which stands still there.
 #pragma once
 
 #include <cstdint>
@@ -18,14 +18,14 @@ struct Bounds {
   static constexpr int kDirections = 13;
   double lo[kDirections], hi[kDirections];
 
-  /// Not certainly apart; so too where a number is none.
+  /// Whether they are not certainly apart; true also if a number is NaN.
   bool meets(const Bounds& other) const {
     for (int d = 0; d < kDirections; ++d) {
       if (lo[d] > other.hi[d] || other.lo[d] > hi[d]) return false;
     }
     return true;
   }
-  /// Holds nothing.
+  /// Bounds that hold no point.
   static Bounds none();
   void join(const Bounds& other);
 };
@@ -36,22 +36,22 @@ Bounds boundsOf(const double* points, int count, double radius);
 Bounds boundsOf(const engine::SweptLink& link);
 Volume addVolume(const engine::SweptLink& link, Batch& batch);
 
-/// A subtree of a pair's still body: what of it is drawn is one group.
+/// A subtree of a pair's still body. All that is drawn of it is one group.
 struct Cluster {
   std::int32_t pair, node;
 };
 
-/// The collection from the obstacles of a query.
+/// The place where the pieces of a query's still bodies are collected.
 struct Collection {
   Batch& batch;
   std::int32_t first_group;        ///< the query's, in the batch
-  std::size_t most;                ///< objects of the batch, all included
+  std::size_t most;                ///< maximum number of objects in the batch
   std::vector<Cluster>& clusters;  ///< of each group of the query
   std::vector<Cluster>& free;      ///< proven free without being drawn
   std::int32_t nextGroup() const { return first_group + static_cast<std::int32_t>(clusters.size()); }
 };
 
-/// Pieces of a body that stands still, in the frame of what is swept.
+/// Pieces of a body that stands still, in the frame of the swept volumes.
 class BodyPieces {
  public:
   /// @param at      where the tree stands in that frame.
@@ -63,7 +63,8 @@ class BodyPieces {
   /// @param parts  bounds of what is swept in each of the eight parts of the motion.
   /// @param[in,out] lanes  parts to look at; those that no piece meets are taken out.
   /// @param[in,out] reach  joined with the bounds of what is added.
-  /// @return false where to.most was too few, or the body is unbounded: nothing is known, lanes are as they were.
+  /// @return false if there were more than to.most objects, the tree is too deep, or the body is unbounded: nothing is
+  /// known then, and `lanes` is unchanged.
   bool add(const Bounds* parts, std::uint32_t& lanes, double least, double cluster, std::int32_t window,
            std::int32_t pair, Collection& to, Bounds& reach) const;
 
@@ -75,7 +76,7 @@ class BodyPieces {
 
   const engine::TreeView& tree_;
   const engine::Placement& at_;
-  double pad_;  ///< rounding of a point's way to its place, and the margin
+  double pad_;  ///< bound on the rounding of a placed point, plus the margin
   double axes_[3][Bounds::kDirections], origin_[Bounds::kDirections];  ///< of the tree's frame, along the directions
 };
 

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Poses at which contact is likely, for queries that any contact answers: they are tried before any pair is
-// followed, and the first proof ends the query. Nothing rests on the guesses: a contact that is reported is proven,
-// and its time is the pose's.
+// Poses at which contact is likely, for queries that any contact answers: they are tried before any pair is followed,
+// and the first proof ends the query. No guess is trusted: a contact that is reported is proven, and its time is the
+// pose's.
 //
-// 1. Before stage 1, tryLikely(): balls inside two links, in a pose in which their grid has them meet.
+// 1. Before stage 1, tryLikely(): balls inside two links, in the middle of a part for which an advisor suggests that
+//    they meet.
 // 2. In stage 1, tryObstacle(), for a link deep in a solid: a ball inside the link, a hull's vertex in the solid, a
 //    chord of the solid through a triangle.
 // 3. In stage 1, considerLinks(): a ball inside a link in a ball inside another, in the pose in which their line
 //    swept spheres are deepest in each other.
 // 4. In the first batch (PairSearch::testHulls()) pair by pair, links deepest in each other first (deepestFirst()). If
-//    the hulls are not proven apart, tryLinks() tries such balls at all other poses in which they may meet. If links
-//    are deep in each other, it tests their boxes by the six axes, in one pose, down to an edge of one triangle that
-//    certainly pierces another.
+//    the hulls are not proven apart, tryLinks() tries balls inside the links at all other poses in which these may
+//    meet. If the links are deep in each other, it also tests their nodes' boxes by the six axes, in one pose, down to
+//    triangles. Contact is proven if an edge of one certainly pierces another.
 // 5. tryOverlaps(): leaves at the middle of a part in which hulls overlap, unless the pair rests from the start on.
 // 6. In the search, Follower::proveAhead(): the pieces at a followed pair's witness, a little after the contact
 //    expected.
@@ -93,7 +94,8 @@ class AnyContact : PartOfSolver {
   Buffer<std::int32_t> order_;
 };
 
-/// Balls inside links, where the query's advisors expect these to meet. (Kept out of every query's way.)
+/// Tries balls inside links where the query's advisors expect the balls to meet. (Its code is kept apart from that of
+/// other queries.)
 [[gnu::noinline, gnu::cold]] inline bool AnyContact::tryLikely() {
   frames_.set(whole());
   for (int n = 0; n < query().num_advisors; ++n) {
@@ -110,13 +112,13 @@ class AnyContact : PartOfSolver {
   return false;
 }
 
-/// Both bodies are one convex piece each.
+/// Whether both bodies are one convex piece each.
 inline bool AnyContact::isLeafPair(PairId pair) const {
   const PairParts bodies = problem().parts(pair);
   return body(bodies.a).tree->num_pieces == 1 && body(bodies.b).tree->num_pieces == 1;
 }
 
-/// The common point that GJK finds of two bodies of one piece each.
+/// Tries the common point that GJK finds of two bodies of one piece each.
 inline bool AnyContact::tryLeafPair(PairId pair, int lane) {
   return proofs_.leaves(motions_.of(pair, whole()), 0, 0, lane);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Proofs of contact by balls inside closed meshes, at one pose, where any contact will do. Where what two closed
-// surfaces enclose meets, and neither surface lies within what the other encloses, the surfaces meet (doc/NUMERICS.md,
-// "Inner balls").
+// Proofs of contact by balls inside closed meshes, at one pose, for queries that any contact answers. If the spaces
+// that two closed surfaces enclose meet, and neither surface lies within the space that the other encloses, the
+// surfaces meet (doc/NUMERICS.md, "Inner balls").
 #pragma once
 
 #include "convex/piece_kinds.h"
@@ -39,7 +39,8 @@ inline PlacedLink seenFrom(const Placement& P, const PlacedLink& link) {
   return seen;
 }
 
-/// Bound on the error of two such places' difference; seen from either link it is three times that.
+/// Bound on the error of the difference of two points, one placed by `a` and one by `b`. Three times that bounds the
+/// error of the difference as seen from either link.
 inline double differenceError(const PlacedLink& a, const PlacedLink& b) {
   return kUlp * (a.ulps + b.ulps + kPoseUlps) * (a.sizes + b.sizes) + kLeastLength;
 }
@@ -52,7 +53,8 @@ FCL_ARTIC_INLINE Vec3Lanes pointsAt(const double* x, const double* y, const doub
   return {lanesAt(x), lanesAt(y), lanesAt(z)};
 }
 
-/// One of eight points, in a part's tree frame and off by `error` at most, certainly lies outside the part's box.
+/// Whether at least one of eight points certainly lies outside a part's box. The points are in the part's tree frame,
+/// off by `error` at most.
 inline bool certainlyOutside(const ClosedPart& part, const Vec3Lanes& points, double error) {
   unsigned out = 0;
   for (int k = 0; k < 3; ++k) {
@@ -61,14 +63,15 @@ inline bool certainlyOutside(const ClosedPart& part, const Vec3Lanes& points, do
   return out != 0;
 }
 
-/// A link's part certainly reaches out of another link's part.
+/// Whether a link's part certainly reaches out of another link's part.
 inline bool certainlyReachesOut(const ClosedPart& part, const PlacedLink& link, const ClosedPart& other_part,
                                 const PlacedLink& other, double error) {
   const Vec3Lanes x = link.place(pointsAt(part.points[0], part.points[1], part.points[2]));
   return certainlyOutside(other_part, other.seenFromLink(x), error);
 }
 
-/// Proofs at the middle of a lane of the present batch. A proven contact is recorded, and true is returned.
+/// Proofs at the middle of a lane of the batch that SweptFrames has. If a contact is proven and counts, it is recorded,
+/// and true is returned.
 class BallProofs : PartOfSolver {
  public:
   explicit BallProofs(SearchState& state)
@@ -99,7 +102,8 @@ inline PlacedLink BallProofs::placedLink(int index, int lane) {
   return seenFrom(step, {mover.placement, mover.tree->extent});
 }
 
-/// Distance of two links' line swept spheres' segments below which balls inside them may meet; 0: none can.
+/// Balls inside two links may meet only if the segments of the links' line swept spheres are nearer than this; 0: no
+/// balls can meet.
 inline double BallProofs::ballReach(PairId pair) const {
   const PairParts bodies = problem().parts(pair);
   const InnerBalls *a = body(bodies.a).balls, *b = body(bodies.b).balls;
@@ -164,8 +168,8 @@ inline Vec3Lanes farPoints(const TreeView& solid) {
   return points;
 }
 
-/// A link and a solid at a lane's middle: a ball inside the link's mesh meets the solid, and that, being of one piece,
-/// reaches out of the mesh's part.
+/// A link and a solid, which is one convex piece, at a lane's middle. A ball inside the link's mesh meets the solid,
+/// and the solid reaches out of the closed part that holds the ball.
 inline bool BallProofs::inSolid(PairId pair, int lane) {
   const PairParts bodies = problem().parts(pair);
   const Body &solid = body(bodies.a), &link = body(bodies.b);

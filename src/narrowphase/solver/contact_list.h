@@ -35,8 +35,8 @@ class ContactList : PartOfSolver {
     watching_ = !query().ignore_initial;
   }
 
-  /// Whether it is known from when on each pair is watched. Before that, if initial contacts are to be ignored, no
-  /// contact counts.
+  /// Whether it is known from when on each pair is watched. If initial contacts are to be ignored, no contact counts
+  /// before that is known.
   bool watching() const { return watching_; }
   void ignore(PairId pair, double watch_from) {
     const PairParts bodies = problem().parts(pair);
@@ -52,7 +52,7 @@ class ContactList : PartOfSolver {
   }
 
   /// Takes the proof that a pair is in contact at time t, whoever has proven it: all proofs come through here.
-  /// @return false where that contact does not count: it is one to be ignored, or it is not known yet which are.
+  /// @return false if that contact does not count: it is to be ignored, or it is not known yet which ones are.
   bool takeProof(PairId pair, double t) {
     FCL_ARTIC_ASSERT(t >= 0 && t <= 1);
     if (!watching_ || t < watchFrom(pair)) return false;
@@ -62,7 +62,7 @@ class ContactList : PartOfSolver {
   }
   /// Records a contact proven at one time, where any will do: it ends the search. Point and normal are left to the
   /// caller.
-  /// @return null where the contact does not count (takeProof()).
+  /// @return null if the contact does not count (takeProof()).
   LeafContact* record(PairId pair, int piece_a, int piece_b, double t) {
     if (!takeProof(pair, t)) return nullptr;
     LeafContact& contact = grow(pair, piece_a, piece_b);
@@ -83,8 +83,9 @@ class ContactList : PartOfSolver {
   const Ignored* ignored() const { return ignored_.data(); }
   int numIgnored() const { return ignored_.size(); }
 
-  /// Looks at the contacts from `begin` on that start until t. Keeps the first of each pair, in their order, as many as
-  /// are asked for. The one kept starts with the earliest of its pair: before that none of the pair's pieces touch.
+  /// Orders the contacts from number `begin` on by comesBefore(). Keeps those with t_lower <= t, of each pair the first
+  /// one, and Query::max_contacts at most. A kept contact takes the least t_lower of its pair's: before that none of
+  /// the pair's pieces touch.
   void order(int begin, double t) {
     int kept = begin;
     for (int i = begin; i < contacts_.size(); ++i) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Point and normal of a contact that the search has found. No time is decided here.
+// Records a contact that the search has found, with its point and normal. Times are the candidate's; here they are
+// recorded.
 #pragma once
 
 #include "narrowphase/solver/follower.h"
@@ -13,7 +14,7 @@ class ContactWriter : PartOfSolver {
   explicit ContactWriter(SearchState& state)
       : PartOfSolver(state.task), motions_(state.motions), horizon_(state.horizon), contacts_(state.contacts) {}
 
-  /// A candidate that is stuck, to a new contact.
+  /// Makes a new contact of a candidate whose gap is closed, with the candidate's t_lower.
   void record(Candidate& f);
 
  private:
@@ -26,7 +27,8 @@ class ContactWriter : PartOfSolver {
   ContactList& contacts_;
 };
 
-/// A pair that was never seen apart, as it touches where its window begins: looks back, ever farther, to where it was.
+/// For a pair that was never seen apart, since it touches where its window begins: looks for a normal at earlier times,
+/// ever farther back.
 inline void ContactWriter::lookBack(Candidate& f) {
   TimeBatch poses = {};
   double step = query().tolerance_time;
@@ -96,7 +98,8 @@ inline void ContactWriter::record(Candidate& f) {
     f.normal.store(contact.normal);
     return;
   }
-  // The rest is seen at t_lower, but a wall's normal at the time at which the contact is reported.
+  // Point and normal that are still missing are found at t_lower; a wall's normal is found at the time that is
+  // reported.
   const Seen seen = motions_.of(f.entry.pair, TimeBatch::around(wall ? contact.t : f.t_lower));
   const DifferenceBody body = seen->differenceAt(a, b, 0);
   if (wall) turnToSide(f, body);

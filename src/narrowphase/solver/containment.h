@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Meshes that are solids. All other parts prove that the mesh's surface is apart from the other body. As long as it is,
-// neither body can come to lie within the other. So one pose shows whether one does (doc/NUMERICS.md, "Solid meshes").
+// Solid meshes. All other parts of the solver prove only that a mesh's surface is apart from the other body. As long as
+// it is, neither body can come to lie within the other. So one pose shows whether one body lies within the other all
+// that time (doc/NUMERICS.md, "Solid meshes").
 #pragma once
 
 #include "narrowphase/solver/stage_one.h"
@@ -24,11 +25,12 @@ class Containment : PartOfSolver {
   void findAtStart();
   /// Whether one body of a pair may lie within the other at time t.
   bool mayBeContained(PairId pair, double t);
-  /// This is one of the pairs that findAtStart() has found.
+  /// Whether the pair is one of those that findAtStart() has found.
   bool isContainedAtStart(PairId pair) const;
   int size() const { return contained_.size(); }
   PairId pair(int i) const { return contained_[i].pair; }
-  /// A body that lies within another one at t = 0 is in contact there, but for the initial contacts that are ignored.
+  /// Records the contacts at t = 0 of the pairs found, but for those that are ignored. With Query::every_pair the
+  /// entries of these pairs in `open` are closed.
   void report(Buffer<Entry>& open);
 
  private:
@@ -43,7 +45,7 @@ class Containment : PartOfSolver {
   Buffer<LeafContact> contained_;  ///< at t = 0
 };
 
-/// Whether one body of a pair, whose surfaces may well be apart, lies within the other at time t.
+/// Whether one body of a pair lies within the other at time t; their surfaces may be apart.
 [[gnu::noinline]] inline engine::ContainmentVerdict Containment::contained(PairId pair, double t) {
   const Seen seen = motions_.of(pair, TimeBatch::around(t));
   const PairParts bodies = problem().parts(pair);
@@ -81,8 +83,8 @@ inline void Containment::testAtStart(PairId pair) {
   }
 }
 
-/// A box that holds a body's surface holds the body. So pairs whose boxes are apart in the first lane are left out. No
-/// others are, whatever stage 1, tables or stage 2 prove of surfaces.
+/// A box that holds a body's surface holds the body. So only pairs whose boxes are apart in the first lane are left
+/// out. All others are tested, whatever stage 1, tables or stage 2 prove of their surfaces.
 [[gnu::noinline, gnu::cold]] inline void Containment::findAtStart() {
   contained_.clear();
   if (query().check_scene && problem().obstacle_tree) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A leaf pair, or the hulls around two bodies, followed by itself: t_lower by certificates up to their first root,
-// t_upper by proofs of contact.
+// Follows a leaf pair, or the hulls around two bodies, by itself. Certificates move t_lower up to the first root of the
+// gap's bound; where the pair was never seen apart, t_lower stays. Proofs of contact give t_upper.
 #pragma once
 
 #include "narrowphase/solver/entry.h"
@@ -10,15 +10,15 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// GJK's accuracy where two directions are to say how they turn. Measured: 0.1 takes 20 % more rounds, 0.001 a few per
-/// cent fewer at more expense.
+/// GJK's accuracy where two directions are to show how the direction turns. Measured: 0.1 takes 20 % more rounds, 0.001
+/// a few per cent fewer at more expense.
 constexpr double kFollowingAccuracy = 0.02;
 
-/// Nothing is known of how near they are.
+/// The upper bound of a gap of which nothing is known; with a minus, the lower bound. (A negative gap is a depth.)
 constexpr double kUnknownGap = 1e300;
 
-/// The open rest of a pair: one leaf pair or the hulls around both bodies, which are followed by themselves, or parts
-/// of their trees.
+/// The rest of one pair that is not decided yet: one leaf pair, or the hulls around both bodies, or parts of both
+/// trees. The first two are followed; parts of trees are traversed.
 struct Candidate {
   enum class Target { leafPair, hulls, subtrees };
 
@@ -26,15 +26,15 @@ struct Candidate {
   Target target;
   std::int32_t piece_a, piece_b;  ///< of a leaf pair
   std::int32_t first, count;      ///< of a lane of the first batch: its entries on PairSearch's stack
-  double t_lower;                 ///< free before
+  double t_lower;                 ///< before it the pair is proven free, or is not watched
   Vec3 normal;                    ///< GJK's witness at t_lower
-  double gap_lower;               ///< along it: a lower bound, far below it where GJK ends early
-  double gap_upper;               ///< an upper bound of the gap, from points of both
-  double pad;                     ///< of rounding, when it was looked at last
-  double speed;                   ///< of the one body seen from the other, about
+  double gap_lower;               ///< lower bound of the gap, along `normal`; far below the gap where GJK ends early
+  double gap_upper;               ///< upper bound of the gap, from points of both
+  double pad;                     ///< bound on rounding, of the batch looked at last
+  double speed;                   ///< about that of the one body as seen from the other
   bool have_normal;
   Simplex simplex;  ///< GJK's last
-  bool gap_closed;  ///< the gap is gone at t_lower, within rounding
+  bool gap_closed;  ///< not followed beyond t_lower: the gap seems closed there, or contact is proven
   bool certain;
   double t_upper;  ///< of a proven contact
   Vec3 point;      ///< likewise
@@ -141,8 +141,9 @@ class Follower : PartOfSolver {
   ContactList& contacts_;
 };
 
-/// GJK's witness at some time of the present lanes, to f.
-/// @return false: the gap is gone there, or so it seems.
+/// Stores GJK's witness, and bounds of the gap, in f.
+/// @param tau  the time, from -1 to 1 across the lane.
+/// @return false if GJK claims overlap: then only the simplex and `gap_upper` are set.
 inline bool Follower::findGap(Candidate& f, Seen seen, int lane, double tau, double accuracy) {
   const PiecePair pieces = piecesOf(f, seen);
   const double radii = pieces.a.radius + pieces.b.radius + seen->margin();
@@ -167,7 +168,7 @@ inline bool Follower::findGap(Candidate& f, Seen seen, int lane, double tau, dou
   return f.have_normal = true;
 }
 
-/// Along f.normal, over the lanes of `seen`.
+/// Lower bounds of the gap along f.normal, which may turn, over the lanes of `seen`.
 inline GapBounds Follower::boundGap(const Candidate& f, Seen seen, const Turning& turning) {
   const PiecePair pieces = piecesOf(f, seen);
   GapBounds bounds;
@@ -187,15 +188,15 @@ inline GapBounds Follower::boundGap(const Candidate& f, Seen seen, const Turning
   return bounds;
 }
 
-/// Follows a leaf pair from its t_lower towards `stop`. A certificate with one direction holds over eight lanes, up to
-/// the first root of the gap's bound. There GJK finds a new direction, and the next lanes are as wide as the gap will
-/// last at the speed seen so far. Two directions say how they turn: from then on the certificate's turns likewise, and
-/// the steps are those of a secant method.
-/// @param patient  goes on until no step gets farther, for 48 rounds at most; else the search ends where contact is to
-/// be expected within the tolerance.
-/// @param first_lanes  not 0: begin with the first batch's lanes, of which all but these are free.
-/// @return false where it ended before `stop` (and before the earliest proven contact), or, where any contact will do,
-/// has proven one (f.certain).
+/// Follows a leaf pair or two hulls from f.t_lower towards `stop`. A certificate with one direction holds over eight
+/// lanes, up to the first root of the gap's bound. There GJK finds a new direction, and the next lanes go about as far
+/// as the gap will last at the speed seen so far. Two directions show how the direction turns. From then on the
+/// certificate's direction turns likewise, and the steps are those of a secant method.
+/// @param patient  true: goes on until no step gets farther, for 48 rounds at most. false: ends after 24 rounds at
+/// most, and where contact is expected within a sixteenth of the time tolerance.
+/// @param first_lanes  not 0: begins with the first batch, of which all lanes but these are free.
+/// @return true: free until `stop`, or until Horizon::end() if that is earlier. false: it ended before these
+/// (f.gap_closed); if any contact will do, it may have proven one (f.certain).
 inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsigned first_lanes) {
   const double expected = query().tolerance_time / 16;
   double span = stop - f.t_lower, accuracy = patient ? 1e-7 : kFollowingAccuracy;
@@ -253,7 +254,9 @@ inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsi
 }
 
 /// For queries that any contact answers: the lanes of a followed pair reach beyond the contact that is expected. The
-/// pieces that hold the last witness are tried there; where they touch, f becomes their contact.
+/// pieces that hold the last witness are tried there. If they certainly touch, f becomes the candidate of these pieces,
+/// with the proof.
+/// @return whether contact is proven.
 inline bool Follower::proveAhead(Candidate& f, Seen seen, int lane) {
   const TreeView &A = seen->a(), &B = seen->b();
   const int piece_a = f.isHulls() ? pieceAtWitness(A, f.simplex, true) : f.piece_a;
@@ -272,8 +275,8 @@ inline bool Follower::proveAhead(Candidate& f, Seen seen, int lane) {
   return true;
 }
 
-/// Decides a leaf pair that is stuck, if a proof is found. True: it is free after all. False: f.certain says whether
-/// contact is proven.
+/// Decides a leaf pair whose gap is closed, if a proof is found.
+/// @return true: it is free until `stop` after all. false: f.certain says whether contact is proven.
 inline bool Follower::decide(Candidate& f, double stop) {
   if (prove(f)) return false;
   const double before = f.t_lower;
@@ -284,7 +287,8 @@ inline bool Follower::decide(Candidate& f, double stop) {
   return false;
 }
 
-/// Proof of contact within the tolerance after t_lower.
+/// Tries to prove contact within the tolerance after t_lower.
+/// @return whether it is proven.
 inline bool Follower::prove(Candidate& f) {
   // Not quite 1: the sum rounds, and the bracket is to be no wider than the tolerance.
   static const double kOffsets[kLanes] = {0.25, 0.5, 0.999, 0x1p-4, 0x1p-6, 0x1p-9, 0x1p-14, 0};
@@ -309,8 +313,8 @@ inline bool Follower::prove(Candidate& f) {
   return false;
 }
 
-/// Hulls that meet, whose vertices are their bodies' own: of convex bodies the pieces there meet at the same time.
-/// Where that is proven, f is re-targeted from the hulls to these two pieces.
+/// For hulls that meet, and whose vertices are their bodies' own. If the bodies are convex, their pieces there meet at
+/// the same time. If contact of the two pieces is proven, f is re-targeted to them.
 inline void Follower::proveBelowHulls(Candidate& f) {
   if (!f.have_normal) return;
   const TreeView &A = *body(problem().parts(f.entry.pair).a).tree, &B = *body(problem().parts(f.entry.pair).b).tree;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Pairs that touch at t = 0 and are ignored until they have separated. Solid meshes have separated when their surfaces
-// are apart and neither body lies within the other.
+// Pairs in contact at t = 0 that are ignored until they have separated: until the begin of the first lane in which they
+// are proven free. If they are solid meshes, neither may lie within the other there.
 #pragma once
 
 #include "narrowphase/solver/containment.h"
@@ -9,7 +9,8 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// Separation is looked for in lanes down to this width, whatever the tolerance: all queries are to leave out the same.
+/// Separation is looked for in lanes down to this width, whatever the tolerance, so that all queries ignore the same
+/// contacts.
 constexpr double kSeparationLane = 1.0 / 512;
 
 class InitialContacts : PartOfSolver {
@@ -36,7 +37,8 @@ class InitialContacts : PartOfSolver {
   Containment& containment_;
 };
 
-/// Time from which a pair in contact at t = 0 is watched: the start of its first free lane. kNever: it never separates.
+/// Time from which a pair in contact at t = 0 is watched: the start of the first lane in which it is proven free.
+/// kNever: there is none.
 inline double InitialContacts::firstFreeTime(PairId pair, double start, double width) {
   const TimeBatch batch = TimeBatch::partsOf(start, width);
   ++statistics().batches;
@@ -74,7 +76,7 @@ inline void InitialContacts::collect(const Buffer<Entry>& open) {
       contacts_.ignore(pair, firstFreeTime(pair, 0, 1));
     }
   }
-  // One within the other, with surfaces that are proven apart over the whole motion: that does not end.
+  // If one body lies within the other, and their surfaces are proven apart over the whole motion, it stays there.
   for (int i = 0; i < containment_.size(); ++i) {
     const PairId pair = containment_.pair(i);
     if (mayIgnore(pair) && !contacts_.isIgnored(pair)) contacts_.ignore(pair, kNever);

@@ -8,17 +8,17 @@
 // 1. testHulls(), the first batch: over the eight parts of [0, 1] it tests boxes and then hulls of whole bodies. They
 //    prove most neighbours apart before any triangle is examined. GJK finds directions for a whole part of the motion
 //    (swept_difference.h), between a link and an obstacle from stage 1's direction on, and witnesses at the middle. If
-//    GJK claims an overlap, later parts are put off (Horizon::suspect()). If the claim proves wrong, lookAtPutOff()
-//    examines them.
+//    GJK claims an overlap in a part, contact is suspected there, and later parts are put off (Horizon::suspect()). If
+//    the suspicion proves wrong, lookAtPutOff() examines them.
 // 2. search(): a problem of one pair, as the drop-in asks it, is followed from its first open part to its last at
 //    once. For many pairs descendIntoPieces() traverses their trees over the first batch, and solveLane() takes the
 //    parts one after the other.
 // 3. solveLane() follows the hulls of each pair to where they meet (Follower::followToRoot()): certificates up to
 //    the first root of the gap's bound, then a new direction from there. Two directions show how they turn, and the
 //    next certificate's turns likewise: the steps of a secant method.
-// 4. The pair that meets first is solved first, and a contact found ends the search in the others. If a mesh is
-//    convex, its triangle at the hulls' witness touches at that very time, which is proven at once
-//    (proveBelowHulls()). If bodies rest on each other there, pieces at the hulls' witness are tried first
+// 4. The pair that meets first is solved first, and a contact found ends the search in the others. If a mesh is convex,
+//    its triangle at the hulls' witness touches at that very time, which is proven at once (proveBelowHulls()). If
+//    bodies seem to rest on each other there, the pieces around the hulls' witness are tried before all others
 //    (recordWhereTheyRest()). If they are in each other from t = 0 on, recordAtStart() tries triangles that cross
 //    there, the first leaves that touch, and triangles that cross within the tolerance after it.
 // 5. solvePieces() searches below the hulls: windows of time, each again in eight parts (solveInterval()), with a
@@ -168,7 +168,7 @@ class PairSearch : PartOfSolver {
   Follower& follower_;
   AnyContact& any_;
   ContactWriter writer_;
-  Buffer<Entry> pieces_;          ///< what the first batch has left undecided
+  Buffer<Entry> pieces_;          ///< entries that the first batch has left undecided
   Buffer<Entry> stack_;           ///< of narrower windows: what each leaves to those within it
   Buffer<Candidate> candidates_;  ///< of a lane of the first batch
   EarliestFirst earliest_first_;  ///< of these, by the times until which they are proven free
@@ -205,9 +205,10 @@ inline bool PairSearch::stayNear(const Candidate& f) {
 
 /// A pair whose hulls touch at t, before which all is free, may rest there, like a cup on a table. Pieces around the
 /// hulls' witness are examined by themselves. If contact of two of them at t is proven, or no proof separates them, it
-/// is recorded: no contact is earlier. (Without it thousands of pairs of coplanar triangles are divided down to the
-/// finest lanes, of which none can be proven: 27 ms where 10 um farther up it is 6 us.)
-/// @return false where others may touch earlier.
+/// is recorded: no contact is earlier. (Otherwise thousands of pairs of coplanar triangles, of which nothing can be
+/// proven, would be divided down to the finest lanes. A query took 27 ms so; with the upper body 10 um higher it took 6
+/// us.)
+/// @return whether a contact is recorded; if not, the pair is to be searched.
 inline bool PairSearch::recordWhereTheyRest(PairId pair, double t) {
   if (contacts_.watchFrom(pair) > t) return false;
   const Seen seen = motions_.of(pair, TimeBatch::partsOf(t, finestEnd(t) - t));
@@ -239,12 +240,12 @@ inline bool PairSearch::recordWhereTheyRest(PairId pair, double t) {
 }
 
 /// For bodies that overlap at t = 0: triangles that cross there are the contact, or the first leaves that touch; it
-/// does not matter how many others do. (Without it all of them are divided down to the finest lanes.) If no contact of
-/// them is proven, triangles may cross within the tolerance after the start. A body that begins as a copy of the other
-/// one shares faces and edges with it at first, and soon crosses it along a line. This line is looked for all over the
-/// bodies.
+/// does not matter how many others touch. (Otherwise all of them would be divided down to the finest lanes.) If no
+/// contact of them is proven, triangles may cross within the tolerance after the start. A body that begins as a copy of
+/// the other one shares faces and edges with it at first, and soon crosses it along a line. This line is looked for all
+/// over the bodies.
 /// @param of  what is left of one pair.
-/// @return false where others may touch earlier.
+/// @return whether a contact is recorded; if not, the pair is to be searched.
 inline bool PairSearch::recordAtStart(const Selection& of) {
   const PairId pair = of.list[of.begin].pair;
   if (contacts_.watchFrom(pair) > 0) return false;
@@ -268,9 +269,9 @@ inline bool PairSearch::recordAtStart(const Selection& of) {
   return proofs_.anyTriangles(motions_.of(pair, after), 0, kMaxAfterStart);
 }
 
-/// Whether a leaf pair of `touching_` touches at t; then it is recorded.
-/// @param may_rest  if no contact at t is proven, record the first pair that is near at t and of which nothing is
-/// proven.
+/// Records a leaf pair of `touching_` that touches at t, if there is one.
+/// @param may_rest  if no contact at t is proven, the first pair that is near at t and of which nothing is proven is
+/// recorded.
 inline PairSearch::Touching PairSearch::recordTouching(double t, bool may_rest) {
   const double stop = finestEnd(t);
   Candidate resting = {};
@@ -383,8 +384,8 @@ inline void PairSearch::descendIntoPieces(const Buffer<Entry>& open, int begin, 
   }
 }
 
-/// Examines the entries of `pieces_` that were put off after all, if there are any in the next lane: the contact that
-/// was suspected is none.
+/// If entries of `pieces_` were put off in the next lane, the suspicion was wrong: then examines all entries that were
+/// put off.
 /// @param later  lanes of the first batch that are still to come.
 inline void PairSearch::lookAtPutOff(unsigned later) {
   const int end = pieces_.size();
@@ -425,9 +426,9 @@ inline void PairSearch::solveLane(const Selection& of, const Window& window, uns
       continue;
     }
     horizon_.dropSuspicion();
-    // If another pair is taken to touch at t = 0, the search ends within the finest window. Nothing is put off in lanes
-    // that narrow. So every leaf of bodies deep in each other would be examined: 14 ms for a link in a table, 0.1 ms at
-    // the start.
+    // If contact at t = 0 of another pair is proven or assumed, the search ends within the finest window. In lanes as
+    // narrow as that nothing is put off, so every leaf of bodies deep in each other would be examined. For a link in a
+    // table that takes 14 ms; recordAtStart() takes 0.1 ms.
     const bool ends_at_start = f.t_lower == 0 && horizon_.end() <= finestWidth();
     if (ends_at_start && recordAtStart({stack_, f.first, f.first + f.count, of.lane})) continue;
     splits_at_start_ = suspected ? 0 : 1;
@@ -437,9 +438,11 @@ inline void PairSearch::solveLane(const Selection& of, const Window& window, uns
   if (!horizon_.isOver()) horizon_.provenFree(stop);
 }
 
-/// Makes one candidate per pair, of all its entries, in `candidates_` and `earliest_first_`. It is one leaf pair, which
-/// is followed at once; or whole bodies, whose hulls are followed; or parts of them that the first batch has come to
-/// already. Candidates that are free in the window are left out.
+/// Makes one candidate of all entries of a pair, in `candidates_` and `earliest_first_`:
+/// - one leaf pair: it is followed at once;
+/// - whole bodies: their hulls are followed;
+/// - parts of bodies, to which the first batch has come already: they are not followed.
+/// Candidates that are proven free in the window are left out.
 inline void PairSearch::followHulls(const Selection& of, const Window& window, unsigned first_lanes) {
   using Target = Candidate::Target;
   candidates_.clear();
@@ -517,8 +520,8 @@ inline PairSearch::LaneResult PairSearch::solveInterval(const Selection& of, con
   return LaneResult::free;
 }
 
-/// Decides a lane that some entries of one pair leave undecided: few leaf pairs are followed one by one; else the lane
-/// is split.
+/// Decides a lane that some entries of one pair leave undecided. A few leaf pairs are followed one by one. If there are
+/// more, or the proofs fail, the lane is split.
 inline PairSearch::LaneResult PairSearch::solveOpenLane(const Selection& of, const Window& window) {
   int count = 0;
   bool leaves = true;
@@ -584,7 +587,7 @@ inline void PairSearch::followEach(const Window& window) {
       f.t_lower = max(window.start, contacts_.watchFrom(f.entry.pair));
       leaves_.truncate(i + 1);
     }
-    // It touches from the beginning on: nothing can be earlier, and of many such pairs some are enough.
+    // This pair touches from the window's begin on: no contact is earlier, and of many such pairs some are enough.
     const bool enough = f.certain && f.t_lower <= window.start && i >= 64;
     if (enough || horizon_.isOver()) leaves_.truncate(i + 1);
   }

@@ -6,15 +6,15 @@
 //   TimeBatch        eight intervals of time: a value
 //   SweptFrames      the links' frames over a batch
 //   RelativeMotions  two bodies against each other over a batch, handed down as Seen
-//   Horizon          when the first contact is, as far as known: the only writer of these times
+//   Horizon          the known bounds of the first contact's time, which are kept here alone
 //   ContactList      contacts, and the gate through which every proof of contact comes
 //   SearchState      these: what all others share
 //   PoseProofs, BallProofs   contact at one pose, where any will do
 //   Traversal        a pair's node pairs and leaf pairs over a batch
 //   Follower         a leaf pair, or two hulls, followed to where they meet
-//   ContactWriter    point and normal of the contact found there
+//   ContactWriter    records the contact found there with its t_lower; its point and normal
 //   AnyContact       poses at which contact is likely
-//   StageOne         pairs whose swept bounds meet; and what advisors prove free of them
+//   StageOne         stage 1: pairs whose swept bounds meet; stage 2: takes out what advisors prove free
 //   Containment, InitialContacts   solid meshes within each other, and what is ignored at t = 0
 //   PairSearch       the order of the search: by time, then by pair
 #pragma once

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How the two bodies of one pair move against each other over one batch. RelativeMotions makes it when it is asked for,
-// and keeps one: what the search asks of next is mostly the same pair over the same batch.
+// The motion of a pair's two bodies against each other over one batch. RelativeMotions makes it when it is asked for,
+// and keeps the last one: mostly the search asks for the same pair over the same batch again.
 #pragma once
 
 #include "convex/contact_proof.h"
@@ -28,14 +28,14 @@ class RelativeMotion : PartOfSolver {
     FCL_ARTIC_ASSERT(of_batch_ == frames_.number());
     return frames_.batch();
   }
-  /// Another batch has another number.
+  /// The number of its batch: another batch has another one.
   std::int32_t batchNumber() const { return of_batch_; }
   const TreeView& a() const { return *side_[0].still; }
   const TreeView& b() const { return *side_[0].moving; }
   double smallerRadius() const { return min(a().nodes[0].radius, b().nodes[0].radius); }
 
-  /// One body seen from the other, ready for certificates: 0: B from A, 1: A from B. Made when first asked for, as many
-  /// a pair needs only one of them, or none.
+  /// One body seen from the other, ready for certificates. s = 0: B seen from A; s = 1: A seen from B. Made when first
+  /// asked for: many pairs need only one of the two, or none.
   const Side& side(int s) {
     if (!side_ready_[s]) {
       if (s) invert(side_[0].m, side_[1].m);
@@ -46,7 +46,9 @@ class RelativeMotion : PartOfSolver {
   }
   /// B seen from A, as it is evaluated: without what certificates need.
   const RigidLanes& seenFromA() const { return side_[0].m; }
-  /// Where A's tree frame sees a point p of B's. @return radius about it that holds the point.
+  /// The way of a point p of B's tree frame as seen from A's tree frame.
+  /// @param[out] x  its quadratic.
+  /// @return radius: at each time the point is no farther than this from x.
   double seePoint(const Vec3& p, PointLanes& x) const {
     const RigidLanes& m = side_[0].m;
     for (int order = 0; order < 3; ++order) x.c[order] = mulAdd(m.R[order], spread(p), m.c[order]);
@@ -54,7 +56,7 @@ class RelativeMotion : PartOfSolver {
     const double reach = norm(p) * (1 + 8 * kUlp), sizes = max(a().extent + b().extent, kLeastLength);
     return m.rem_c + m.rem_R * reach + pad() * (1 + reach / sizes);
   }
-  /// In side(s): the tree of the body that stands still; of the one that moves.
+  /// The trees of side(s): of the body from which is seen, and of the one that moves as seen from it.
   const TreeView& still(int s) const { return *side_[s].still; }
   const TreeView& moving(int s) const { return *side_[s].moving; }
 
@@ -102,7 +104,7 @@ class RelativeMotion : PartOfSolver {
     const Cached& cached = cached_[s][node & (kCached - 1)];
     return cached.epoch == epoch_ && cached.node == node;
   }
-  /// Another pair or batch has another one.
+  /// A number: it is another one for another pair or batch.
   std::int32_t epoch() const { return epoch_; }
 
  private:
@@ -186,8 +188,8 @@ inline void RelativeMotion::relate() {
   amplitude_ = sqrt(maxLane(dot(v, v))) + bounds.rates.a * d * root.radius;
 }
 
-/// The motion of one pair over one batch, handed down to all that looks at it. It is there until another pair or batch
-/// is asked for; whoever has asked for another one meanwhile asks for this one again.
+/// The motion of one pair over one batch, handed down to all that looks at it. It is valid until another pair or batch
+/// is asked for. After that it must not be used, but asked for again.
 class Seen {
  public:
   explicit Seen(RelativeMotion& motion) : motion_(&motion), epoch_(motion.epoch()) {}
@@ -202,7 +204,7 @@ class Seen {
   std::int32_t epoch_;
 };
 
-/// Makes them, one at a time.
+/// Makes the motions of pairs over batches, and holds one at a time.
 class RelativeMotions {
  public:
   RelativeMotions(Task& task, SweptFrames& frames) : motion_(task, frames) {}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Whether two bodies rest on each other, by the hulls around them. Nothing rests on the answer: it says what is worth
-// a proof.
+// Guesses, by the hulls around two bodies, whether they rest on each other. Nothing is proven by a guess: it says what
+// is worth a proof.
 #pragma once
 
 #include <initializer_list>
@@ -15,10 +15,10 @@ namespace FCL_ARTIC_ISA {
 /// Maximum number of a body's pieces that are examined around a point where it may rest.
 constexpr int kMaxPiecesAround = 4;
 
-/// Pieces at a witness of the body's hull: the one that holds its vertices, and some whose boxes, enlarged by `reach`,
-/// hold the point itself.
+/// Finds pieces at a witness of the body's hull: the one that has the witness's vertices, and some whose boxes,
+/// enlarged by `reach`, hold the witness's point.
 /// @param at_vertices  pieceAtWitness().
-/// @param point  of the hull, in the tree's frame.
+/// @param point  the witness's, in the tree's frame.
 /// @return their number, kMaxPiecesAround at most.
 inline int piecesAround(const TreeView& tree, int at_vertices, const Vec3& point, double reach, std::int32_t* pieces) {
   constexpr int kDeepest = 64;
@@ -40,9 +40,10 @@ inline int piecesAround(const TreeView& tree, int at_vertices, const Vec3& point
   return found;
 }
 
-/// Returns the largest gap, mostly a negative one, of two hulls along directions in which bodies mostly rest on each
-/// other. These are the axes of their frames, the normals of triangles at a witness, and those of the faces of a
-/// simplex that holds the origin. (If the hulls touch, the origin lies on one of these faces.)
+/// Returns the largest gap of two hulls, without their radii, along directions in which bodies mostly rest on each
+/// other. It is mostly negative. The directions are the axes of their frames, the normals of triangles at a witness,
+/// and those of the faces of a simplex that holds the origin. (If the hulls touch, the origin lies on one of these
+/// faces.)
 inline double gapWhereTheyRest(const DifferenceBody& hulls, const Simplex& simplex) {
   double gap = -kUnknownGap;
   const auto tryDirection = [&](const Vec3& n) {
@@ -71,15 +72,16 @@ inline double gapWhereTheyRest(const DifferenceBody& hulls, const Simplex& simpl
   return gap;
 }
 
-/// The gap of two hulls, as GJK sees it; a negative one, where they rest on each other. Far below 0 where they are in
-/// each other by more than `shallow`.
+/// The gap of two hulls as GJK finds it. If GJK claims overlap, it is gapWhereTheyRest() less the radii, or
+/// -kUnknownGap if the hulls are in each other by more than `shallow`.
 inline double restingGap(const DifferenceBody& hulls, double radii, double shallow, GjkResult& g) {
   gjk(hulls, hulls.pose.c, {kFollowingAccuracy, radii, 64}, g);
   if (!g.overlap || unbounded(*hulls.a) || unbounded(*hulls.b)) return g.lower - radii;
   return depthWithin(g.simplex) + radii > shallow ? -kUnknownGap : gapWhereTheyRest(hulls, g.simplex) - radii;
 }
 
-/// The same of a pair's hulls, where a lane begins. (In a wide lane the pose is off by what the quadratic leaves out.)
+/// The same of a pair's hulls, at the begin of a lane. (In a wide lane the pose is off by what the quadratic leaves
+/// out.)
 inline double restingGap(Seen seen, int lane, GjkResult& g) {
   const Piece &a = *seen->a().outer, &b = *seen->b().outer;
   return restingGap(seen->differenceAt(a, b, lane, -1), a.radius + b.radius + seen->margin(),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Stage 1: pairs whose swept bounds meet, over the eight parts of [0, 1]; and stage 2, what advisors
-// prove free of them.
+// Stage 1 finds the pairs whose swept bounds meet, over the eight parts of [0, 1]. Stage 2 takes the pairs, parts and
+// nodes out of these that advisors prove free.
 #pragma once
 
 #include "narrowphase/solver/any_contact.h"
@@ -16,7 +16,7 @@ FCL_ARTIC_INLINE void prefetch(const T* object) {
   for (unsigned i = 0; i < sizeof(T); i += 64) __builtin_prefetch(reinterpret_cast<const char*>(object) + i);
 }
 
-/// An obstacle, and the lanes in which its box meets a mover's.
+/// An obstacle, and the lanes in which its box meets that of a mover.
 struct BoxHit {
   std::int32_t obstacle;
   unsigned mask;
@@ -32,9 +32,9 @@ class StageOne : PartOfSolver {
         contacts_(state.contacts),
         any_(any) {}
 
-  /// Pairs whose swept bounds meet, with the lanes in which they do, to `open`.
+  /// Stage 1: appends to `open` the pairs whose swept bounds meet, with the lanes in which they meet.
   void cull(Buffer<Entry>& open);
-  /// Pairs that advisors prove free (stage 2) are left out of `open`.
+  /// Stage 2: removes the pairs and lanes from `open` that advisors prove free, and tells `traversal` which nodes are.
   void refine(Traversal& traversal, Buffer<Entry>& open);
   /// From A to B in A's tree frame, in the middles of the lanes, of any length; null: not known.
   const Vec3Lanes* direction(const Entry& e) const { return e.direction < 0 ? nullptr : &directions_[e.direction]; }
@@ -168,8 +168,8 @@ inline unsigned StageOne::lssMayTouch(int mover, int obstacle_number, unsigned m
   return mask;
 }
 
-/// Contact is expected where a line swept sphere is deep in a solid. Lanes after it are put off. If any contact will
-/// do, it is looked for at once instead, and the pose is kept as a guess if the link's axis is very near.
+/// If a line swept sphere is deep in a solid, contact is suspected there, and later lanes are put off. If any contact
+/// will do, it is looked for at once instead; poses are kept as guesses if the sphere's segment is very near the solid.
 inline void StageOne::expectContact(PairId pair, int mover, const engine::StillBounds& obstacle, unsigned mask,
                                     const NearestToBox& nearest) {
   const double radius = mover_lss_[mover].radius;

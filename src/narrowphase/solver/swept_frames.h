@@ -27,7 +27,7 @@ class SweptFrames : PartOfSolver {
       steps += view.num_steps;
       local_[i] = query().degree > 1 || view.local_bounds;
     }
-    // Numbers only ever grow; long before they overflow the stamps are made new.
+    // Numbers of batches only grow. Long before they would overflow they begin anew, and all stamps are cleared.
     const bool anew = last_number_ > 1 << 30;
     if (anew) last_number_ = 0;
     query_began_ = ++last_number_;
@@ -35,7 +35,7 @@ class SweptFrames : PartOfSolver {
     now_ = &kept_[0];
   }
 
-  /// Frames are those of this batch from now on. The frames of whole() are kept meanwhile.
+  /// Sets the batch that of() and bounds() are about. The frames over whole() are kept while another batch is set.
   void set(const TimeBatch& batch) {
     if (now_->number && batch == now_->batch) return;
     now_ = &kept_[batch == whole() ? 0 : 1];
@@ -44,7 +44,7 @@ class SweptFrames : PartOfSolver {
     now_->number = ++last_number_;
   }
   const TimeBatch& batch() const { return now_->batch; }
-  /// Another batch has another number.
+  /// The batch's number: another batch has another one.
   std::int32_t number() const { return now_->number; }
 
   /// Frame of a step of a sweep, seen from the sweep's base.
@@ -53,7 +53,7 @@ class SweptFrames : PartOfSolver {
     if (now_->evaluated[at] != now_->number) evaluateUpTo(sweep, step);
     return now_->frames[at];
   }
-  /// Bounds of a step whose frame has been asked for; step -1: what stands still.
+  /// Bounds of a step. Its frame must have been asked for by of(). Step -1: a body that stands still.
   const StepBounds& bounds(int sweep, int step) const {
     static const StepBounds kStill = {};
     return step >= 0 ? boundsOf(sweep).bounds[first_step_[sweep] + step] : kStill;

@@ -15,13 +15,14 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// A node that is larger than its partner by this factor is not examined in the partner's frame, unless its box there
-/// is known already. Measured: a quarter less time for a link amid one large mesh, nothing elsewhere; 1 is slower.
+/// One of two nodes is always tested by its swept box. So is the other one, unless its radius is this many times its
+/// partner's or more and its swept box is not there yet. Measured: a quarter less time for a link amid one large mesh,
+/// no change elsewhere; 1 is slower.
 constexpr double kLargerNode = 2;
 /// Nodes smaller than this part of the motion are split in time before they are split in space. Measured: anything from
 /// 0.35 to 1.4 is within 30 %.
 constexpr double kSplitTime = 0.7;
-/// Hulls that overlap in this number of lanes are left to their triangles.
+/// Once GJK claims overlap of two hulls in this number of lanes, the rest is left to their triangles.
 constexpr int kMaxHullOverlaps = 2;
 /// The same for convex parts. There are many of them, and their own parts come next.
 constexpr int kMaxPartOverlaps = 1;
@@ -68,7 +69,7 @@ struct DirectionSearch {
   LaneSearch lanes = {};
 };
 
-/// One pair over one batch, in the lanes that Horizon watches.
+/// One pair over one batch, in the live lanes of Horizon's batch.
 class Traversal : PartOfSolver {
  public:
   Traversal(SearchState& state, PoseProofs& proofs)
@@ -246,8 +247,9 @@ inline unsigned Traversal::notSeparated(Seen seen, const PiecePair& pieces, unsi
   return mask;
 }
 
-/// A small body lies within a large mesh's bounds, halfway, and its hull in that one's: hulls would say nothing.
-/// (Hulls without their roundings: with them GJK may end at a face, from which no depth is known.)
+/// Whether, halfway through the batch, a small body's middle lies in the box of a large mesh and their hulls are in
+/// each other: then hulls would say nothing. (The hulls are taken without their radii: with them GJK may end at a face,
+/// from which no depth is known.)
 inline bool Traversal::isWithin(Seen seen) {
   for (int s = 0; s < 2; ++s) {
     const Node &large = seen->still(s).nodes[0], &small = seen->moving(s).nodes[0];
@@ -320,7 +322,7 @@ inline unsigned Traversal::leavesMayTouch(Seen seen, int piece_a, int piece_b, u
   });
 }
 
-/// Whether a node of a pair's still body is proven free over the whole motion.
+/// Whether an advisor has proven a node of a pair's still body free over the whole motion.
 inline bool Traversal::isKnownFree(PairId pair, int node) const {
   bool free = false;
   for (int i = 0; i < free_nodes_.size(); ++i) {
