@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "files/files.h"
+#include "text/counted.h"
 #include "world.h"
 
 namespace fcl_artic::app {
@@ -19,10 +20,10 @@ std::string CertificateFile::add(const Certificate& certificate) {
 std::string CertificateFile::write(const std::string& files) const {
   if (!world_) return "";
   files::writeTogether({{worldPath(), *world_}, {path_, records_}});  // records name their world's hash
-  return fmt::format(
-      "{} certificate{}, {} bytes, in {}, what {} about, {} bytes, in {}; fcl_artic_verify {} {}{} proves {} again",
-      count_, count_ == 1 ? "" : "s", records_.size(), path_, count_ == 1 ? "it is" : "they are", world_->size(),
-      worldPath(), shellWord(worldPath()), shellWord(path_), files, count_ == 1 ? "it" : "them");
+  return fmt::format("{}, {} bytes, in {}, what {} about, {} bytes, in {}; fcl_artic_verify {} {}{} proves {} again",
+                     text::counted(count_, "certificate"), records_.size(), path_, count_ == 1 ? "it is" : "they are",
+                     world_->size(), worldPath(), shellWord(worldPath()), shellWord(path_), files,
+                     count_ == 1 ? "it" : "them");
 }
 
 }  // namespace fcl_artic::app

@@ -124,15 +124,17 @@ std::vector<CertifiedPlan> readPlans(const KinematicTree& tree, const std::vecto
 }
 
 void certify(const ArticulatedCollisionManager& manager, const CertifyOptions& options, CertifiedPlan& plan) {
+  plan.notes = plans::notesOf(plan.plan, options.motion.degrees);
   try {
     plan.motion = plans::toMotion(manager.tree(), plan.plan, options.motion);
+    plan.notes = plan.motion->notes;
     plans::requireCarried(manager.tree(), plan.plan, options.attached, "--attach says what that is");
     const auto begin = Clock::now();
     manager.continuousCollide(plan.motion->trajectory, options.request, plan.result);
     plan.us = std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
     const CertifiedContact* first = plan.result.first();
     if (first && plan.result.t_lower <= plan.motion->trajectory.beginTime()) {
-      plan.motion->notes.insert(plan.motion->notes.begin(), startHint(*first));
+      plan.notes.insert(plan.notes.begin(), startHint(*first));
     }
     if (options.line) plan.line = askToolLine(manager.tree(), plan.motion->trajectory, *options.line);
     if (options.clearance) {

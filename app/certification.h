@@ -27,6 +27,7 @@ struct CertifiedPlan {
   plans::Plan plan;                         ///< as the file says it
   std::optional<plans::PlanMotion> motion;  ///< that was asked about; none: see `error`
   std::string error;                        ///< why there is no answer; empty: there is one
+  std::vector<std::string> notes;           ///< all there are, also of a plan that is wrong
   CertifiedResult result;
   std::optional<Clearance> clearance;  ///< where it was asked for
   std::optional<ToolLineAnswer> line;  ///< where it was asked for

@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "angles.h"
 #include "certificate_file.h"
 #include "certification.h"
 #include "certify_report.h"
@@ -20,6 +19,7 @@
 #include "elapsed.h"
 #include "exit_status.h"
 #include "files/files.h"
+#include "kinematics/angles.h"
 #include "outputs.h"
 #include "plan_variables.h"
 #include "plans/variables.h"
@@ -235,6 +235,11 @@ int runCertify(CertifyVerb& o) {
     throw std::invalid_argument(
         "--mend: detours go straight between waypoints, and a controller that upsamples positions goes another way: "
         "certify a mended plan with its time law, as jtc");
+  }
+  if (!o.tool_line.line.empty() && o.interpolation.kind() == plans::Interpolation::tangentHalfAngle) {
+    throw std::invalid_argument(
+        "--line: no tool is followed along tangents of half angles: leave --line out, or certify the curve that the "
+        "controller runs (--interpolation linear, cubic, quintic or jtc)");
   }
   if (!o.out.empty()) (void)plans::formatOf(o.out);
   std::vector<std::string> inputs = inputsOf(o.world);

@@ -9,6 +9,7 @@
 
 #include "exit_status.h"
 #include "report/report.h"
+#include "text/counted.h"
 #include "text/one_line.h"
 
 namespace fcl_artic::app {
@@ -93,9 +94,9 @@ std::string mendedText(const CertifiedPlan& plan) {
   if (!plan.as_mended) return {};
   const Mended& m = *plan.mended;
   std::string text = fmt::format(
-      "mended in {:.1f} ms, {} detour{} at {:g} m beyond the margin, {} waypoints, {:.4g} times as long, off by at "
+      "mended in {:.1f} ms, {} at {:g} m beyond the margin, {} waypoints, {:.4g} times as long, off by at "
       "most {:.4g} {} ('{}')",
-      m.ms, m.detours, m.detours == 1 ? "" : "s", m.kept, m.plan.positions.size(), m.length_ratio, m.deviation,
+      m.ms, text::counted(m.detours, "detour"), m.kept, m.plan.positions.size(), m.length_ratio, m.deviation,
       m.deviation_is_angle ? "rad" : "m", m.deviation_joint);
   if (plan.motion->timed) text += fmt::format(", {:.4g} s longer", m.added_time);
   text += fmt::format("; straight between waypoints: make its time law anew, for the controller; certified again: {}",
@@ -108,8 +109,9 @@ std::string mendedText(const CertifiedPlan& plan) {
 
 std::string sumText(const CertifyReport& r) {
   const Sum sum = sumOf(r.plans);
-  std::string text = fmt::format("{} plan{}: {} free, {} in contact, {} undecided, {} wrong", r.plans.size(),
-                                 r.plans.size() == 1 ? "" : "s", sum.free, sum.contact, sum.undecided, sum.wrong);
+  std::string text =
+      fmt::format("{}: {} free, {} in contact, {} undecided, {} wrong", text::counted(r.plans.size(), "plan"), sum.free,
+                  sum.contact, sum.undecided, sum.wrong);
   if (sum.left_line > 0)
     text += fmt::format(", {} without contact that leave, or may leave, the tool's line", sum.left_line);
   const bool mending = std::any_of(r.plans.begin(), r.plans.end(),
@@ -122,7 +124,7 @@ std::string sumText(const CertifyReport& r) {
 Json planJson(const CertifyReport& r, const CertifiedPlan& plan) {
   Json out = {{"file", plan.file}, {"plan", plan.plan.name.empty() ? Json() : Json(plan.plan.name)}};
   if (!plan.error.empty()) {
-    out.update({{"status", "error"}, {"error", plan.error}});
+    out.update({{"status", "error"}, {"error", plan.error}, {"notes", plan.notes}});
     return out;
   }
   const plans::PlanMotion& motion = *plan.motion;
@@ -144,7 +146,7 @@ Json planJson(const CertifyReport& r, const CertifiedPlan& plan) {
   for (const char* key : kExceptions) out[key] = all.at(key);
   out["certificate"] = all.at("certificate");
   out["us"] = plan.us;
-  out["notes"] = motion.notes;
+  out["notes"] = plan.notes;
   if (!plan.not_mended.empty()) out["mended"] = {{"status", "error"}, {"error", plan.not_mended}};
   if (plan.as_mended) {
     Json& mended = out["mended"] = planJson(r, *plan.as_mended);
@@ -180,7 +182,7 @@ Report reportOf(const KinematicTree& tree, const CertifiedRequest& request, cons
   Report report{tree,
                 request,
                 plan.result,
-                plan.motion->notes,
+                plan.notes,
                 [&way](double t) { return way.configuration(t); },
                 way.beginTime(),
                 way.endTime(),
@@ -209,9 +211,7 @@ std::string textReport(const CertifyReport& r) {
     if (plan.error.empty()) of_plan += fmt::format(" ({})", motionText(plan));
     text += line("", of_plan);
     if (const std::string mended = mendedText(plan); !mended.empty()) text += line("  ", mended);
-    if (plan.motion) {
-      for (const std::string& note : plan.motion->notes) text += line("  note: ", note);
-    }
+    for (const std::string& note : plan.notes) text += line("  note: ", note);
   }
   for (const std::string& note : r.notes) text += line("note: ", note);
   if (const std::string scope = scopeText(r.request); !scope.empty()) text += line("note: ", scope);

@@ -123,14 +123,16 @@ int runCheck(CheckVerb& options) {
   CertificateFile certificates(options.certificate);
   request.certificate = certificates.wanted();
   if (!options.lines.empty()) {
-    for (const std::string& note : world.notes(manager)) fmt::print(stderr, "fcl_artic: note: {}\n", note);
+    printNotes(world.notes(manager));
     const int status = checkLines(manager, request, {options.lines, of_motion}, certificates);
     if (certificates.wanted()) world.unwritten.attempt([&] { certificates.write(); });
     return world.unwritten.exitStatus(status);
   }
   if (!options.dump.empty()) {  // before it is answered: it may be asked again whatever happens then
-    files::write(options.dump,
-                 trajectory ? manager.writeQuery(*trajectory, request) : manager.writeQuery(*motion, request));
+    world.unwritten.attempt([&] {
+      files::write(options.dump,
+                   trajectory ? manager.writeQuery(*trajectory, request) : manager.writeQuery(*motion, request));
+    });
   }
   CertifiedResult result;
   {

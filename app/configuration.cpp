@@ -9,8 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "angles.h"
+#include "kinematics/angles.h"
 #include "plans/variables.h"
+#include "text/counted.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -100,9 +101,9 @@ Eigen::VectorXd parseConfiguration(const KinematicTree& tree, const std::vector<
     if (!all && given != state.end()) q[v] = given->second;
   }
   if (tokens.size() != variables.size()) {
-    throw std::invalid_argument(fmt::format("{} has {} value{}, robot '{}' has {} joint{}: {}", option, tokens.size(),
-                                            tokens.size() == 1 ? "" : "s", tree.name(), tree.dof(),
-                                            tree.dof() == 1 ? "" : "s", plans::variableNames(tree)));
+    throw std::invalid_argument(
+        fmt::format("{} has {}, robot '{}' has {}: {}", option, text::counted(tokens.size(), "value"), tree.name(),
+                    text::counted(static_cast<std::size_t>(tree.dof()), "joint"), plans::variableNames(tree)));
   }
   for (std::size_t i = 0; i < tokens.size(); ++i) {
     const std::string& token = tokens[i];

@@ -16,10 +16,11 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "angles.h"
 #include "exit_status.h"
 #include "fcl_artic/fcl_artic.h"
+#include "kinematics/angles.h"
 #include "robot_options.h"
+#include "text/counted.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -198,9 +199,7 @@ bool hasAxis(JointType type) {
 
 std::string text(const Info& info) {
   const KinematicTree& tree = *info.robot.tree;
-  const auto count = [](int number, const char* what) {
-    return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
-  };
+  const auto count = [](int number, const char* what) { return text::counted(static_cast<std::size_t>(number), what); };
   std::string out =
       fmt::format("robot '{}': {}, {}, {} in a configuration\n", tree.name(), count(tree.numLinks(), "link"),
                   count(tree.numJoints(), "joint"), count(tree.dof(), "value"));
@@ -236,8 +235,8 @@ std::string text(const Info& info) {
       out +=
           shown++ == 0 ? fmt::format("  {}: ", tree.linkName(link)) : std::string(tree.linkName(link).size() + 4, ' ');
       if (shape.kind == "mesh") {
-        out += fmt::format("mesh {}, {} triangles, {}, {}\n", shape.source, shape.triangles, vectorText(shape.extents),
-                           shape.open.empty() ? "closed and oriented" : shape.open);
+        out += fmt::format("mesh {}, {}, {}, {}\n", shape.source, text::counted(shape.triangles, "triangle"),
+                           vectorText(shape.extents), shape.open.empty() ? "closed and oriented" : shape.open);
       } else {
         out += fmt::format("{}, {}\n", shape.kind, vectorText(shape.extents));
       }

@@ -22,6 +22,7 @@
 #include "render/picture.h"
 #include "robot_options.h"
 #include "setup/neighbours.h"
+#include "text/counted.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -40,7 +41,7 @@ struct SrdfVerb {
 };
 
 std::string pairsText(std::size_t n) {
-  return fmt::format("{} pair{}", n, n == 1 ? "" : "s");
+  return text::counted(n, "pair");
 }
 
 const char* meaningOf(LinkPairKind kind) {
@@ -292,18 +293,18 @@ std::vector<std::string> doubtsOf(const KinematicTree& tree, const LinkPairRepor
   const std::string touch = margin > 0 ? fmt::format("come within the margin of {:g} m", margin) : "touch";
   const std::string apart = margin > 0 ? fmt::format(" by the margin of {:g} m", margin) : "";
   const auto names = [&](LinkPairKind kind) {
-    constexpr std::size_t kMost = 3;
+    constexpr std::size_t kMax = 3;
     std::string text;
     std::size_t count = 0;
     for (const LinkPairFinding& pair : disabled.pairs) {
       if (pair.kind != kind || carrier(pair.link1) == carrier(pair.link2)) continue;  // no motion changes the latter
-      if (count++ < kMost) text += fmt::format("{}{} and {}", text.empty() ? "" : "; ", pair.link1, pair.link2);
+      if (count++ < kMax) text += fmt::format("{}{} and {}", text.empty() ? "" : "; ", pair.link1, pair.link2);
     }
-    if (count > kMost) text += fmt::format("; and {} more", count - kMost);
+    if (count > kMax) text += fmt::format("; and {} more", count - kMax);
     return std::make_pair(count, text);
   };
   if (const auto [count, text] = names(LinkPairKind::sometimes); count > 0) {
-    lines.push_back(fmt::format("{} allowed pair{} can {}, and {} not checked: {}", count, count == 1 ? "" : "s", touch,
+    lines.push_back(fmt::format("{} can {}, and {} not checked: {}", text::counted(count, "allowed pair"), touch,
                                 count == 1 ? "is" : "are", text));
   }
   if (const auto [count, text] = names(LinkPairKind::unproven); count > 0) {

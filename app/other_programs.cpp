@@ -28,7 +28,6 @@ struct OtherVerb {
 constexpr OtherVerb kOtherVerbs[] = {
     {"roadmap", kEdges, "A probabilistic roadmap of a robot: made once, proven free again in each new scene"},
     {"bench", kBench, "Benchmarks on one's own machine"},
-    {"compare", kBench, "How often are FCL's ways of continuous collision right, and this library?"},
     {"generate", kBench, "Write a robot or a scene to try things on"},
 };
 

@@ -9,6 +9,7 @@
 
 #include "exit_status.h"
 #include "files/files.h"
+#include "text/one_line.h"
 #include "world.h"
 
 namespace fcl_artic::app {
@@ -77,6 +78,12 @@ void removeEarlierOutputs(const std::vector<Output>& outputs, const std::vector<
 int UnwrittenOutputs::exitStatus(int status) const {
   for (const std::string& reason : reasons_) fmt::print(stderr, "fcl_artic: error: {}\n", reason);
   return reasons_.empty() ? status : kExitError;
+}
+
+void printNotes(const std::vector<std::string>& notes, const std::string& of) {
+  for (const std::string& note : notes) {
+    fmt::print(stderr, "fcl_artic: note: {}{}{}\n", text::oneLine(of), of.empty() ? "" : ": ", text::oneLine(note));
+  }
 }
 
 std::vector<std::string> inputsOf(const WorldOptions& options) {

@@ -47,6 +47,10 @@ class UnwrittenOutputs {
   std::vector<std::string> reasons_;
 };
 
+/// Prints notes to standard error, a line each.
+/// @param of  what all of them are of, as "'plan.csv'"; empty: they say so themselves.
+void printNotes(const std::vector<std::string>& notes, const std::string& of = {});
+
 /// The files that the options name: robot, SRDF, scenes, carried objects.
 std::vector<std::string> inputsOf(const WorldOptions& options);
 

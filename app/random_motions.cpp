@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
-#include "angles.h"
+#include "kinematics/angles.h"
 #include "kinematics/largest_joint_value.h"
 
 namespace fcl_artic::app {

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "angles.h"
+#include "kinematics/angles.h"
 #include "usage.h"
 
 namespace fcl_artic::app {

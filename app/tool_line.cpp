@@ -13,8 +13,8 @@
 
 #include <fmt/format.h>
 
-#include "angles.h"
 #include "exit_status.h"
+#include "kinematics/angles.h"
 #include "robot_options.h"
 
 namespace fcl_artic::app {
@@ -130,9 +130,9 @@ ToolLineAnswer askToolLine(const KinematicTree& tree, const JointTrajectory& mot
   // The brackets are narrow: an answer is open only within this part of the allowed deviation.
   constexpr double kPart = 0.01;
   // Work of some seconds. If a limit is so narrow against the motion that this is not enough, the answer is undecided.
-  constexpr std::uint64_t kMostPoses = 1 << 21;
+  constexpr std::uint64_t kMaxPoses = 1 << 21;
   ToolLineRequest request;
-  request.work_budget = kMostPoses;
+  request.work_budget = kMaxPoses;
   request.tool = line.tool;
   request.via = line.via;
   if (line.distance > 0) request.tolerance_distance = kPart * line.distance;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The program fcl_artic-bench, which measures: bench robot, compare; and generate, for data to measure with.
+// The program fcl_artic-bench, which measures: bench robot; and generate, for data to measure with.
 #include <CLI/CLI.hpp>
 
-#include "bench/compare.h"
 #include "bench/generate.h"
 #include "bench/robot_bench.h"
 #include "program.h"
@@ -13,7 +12,6 @@ int main(int argc, char** argv) {
     CLI::App* bench = program.add_subcommand("bench", "Benchmarks on one's own machine");
     bench->require_subcommand(1);
     addRobotBench(*bench, exit_status);
-    addCompare(program, exit_status);
     addGenerate(program, exit_status);
   });
 }

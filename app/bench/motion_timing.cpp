@@ -12,8 +12,8 @@
 namespace fcl_artic::app {
 namespace {
 
-constexpr std::size_t kDrawnForWanted = 20, kMostClearances = 200, kMostAskedAgain = 50;
-constexpr double kMostMicroseconds = 1e6;  // to ask again, for each row
+constexpr std::size_t kDrawnForWanted = 20, kMaxClearances = 200, kMaxAskedAgain = 50;
+constexpr double kMaxMicroseconds = 1e6;  // to ask again, for each row
 constexpr double kTail = 0.999;
 
 /// "contact (proven) at t = 0.25" or "free".
@@ -50,13 +50,13 @@ void askSlowestAgain(Task& task) {
   std::vector<std::size_t> order(us.size());
   std::iota(order.begin(), order.end(), 0);
   double spent = 0;
-  for (std::size_t rounds = 0; rounds < us.size() && rounds < kMostAskedAgain; ++rounds) {
+  for (std::size_t rounds = 0; rounds < us.size() && rounds < kMaxAskedAgain; ++rounds) {
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return us[a] < us[b]; });
     const auto slow = std::find_if(order.rbegin(), order.rend() - static_cast<std::ptrdiff_t>(rank - 1),
                                    [&](std::size_t i) { return !again[i]; });
     if (slow == order.rend() - static_cast<std::ptrdiff_t>(rank - 1)) return;
     again[*slow] = true;
-    for (int pass = 0; pass < kPassesOfSlowest && spent < kMostMicroseconds; ++pass) {
+    for (int pass = 0; pass < kPassesOfSlowest && spent < kMaxMicroseconds; ++pass) {
       // The caches hold another motion's data, as before.
       spent += timeOf([&] { task.ask((*slow + us.size() - 1) % us.size()); });
       const double time = timeOf([&] { task.ask(*slow); });
@@ -146,7 +146,7 @@ std::vector<TimedRow> timeMotions(const DrawnMotions& drawn, int passes, const Q
        drawn.free,
        [&](std::size_t i) { questions.clearance(drawn.free[i]); },
        [](std::size_t, TimedRow&) {},
-       std::min(kMostClearances, drawn.free.size())});
+       std::min(kMaxClearances, drawn.free.size())});
   const auto sampled = [&](const Kind& kind, const std::function<void(std::size_t, TimedRow&)>& check) {
     add({{kind.name, "FCL, 1 %", {}, 0},
          kind.motions,

@@ -22,11 +22,11 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "angles.h"
 #include "bench/bars.h"
 #include "elapsed.h"
 #include "exit_status.h"
 #include "files/files.h"
+#include "kinematics/angles.h"
 #include "outputs.h"
 #include "planning/fcl_state_check.h"
 #include "progress.h"
@@ -78,9 +78,9 @@ std::size_t numTriangles(const fcl::CollisionObjectd& object) {
 }
 
 /// Measures a motion in all ways: the manager's queries, and FCL's check of states.
-class Asked {
+class MeasuredRobot {
  public:
-  Asked(const WorldOptions& options, const VisibilityChoice& visibility) : world_(options) {
+  MeasuredRobot(const WorldOptions& options, const VisibilityChoice& visibility) : world_(options) {
     request_.visibility = visibility.mode;
     (void)makeCuller(visibility.executor);             // refused before files are read
     auto measured = [last = Clock::now()]() mutable {  // ms since it was last called
@@ -200,7 +200,7 @@ class Asked {
 /// All that one run found out.
 struct Outcome {
   const RobotBenchOptions& options;
-  const Asked& asked;
+  const MeasuredRobot& asked;
   DrawnMotions drawn;
   std::vector<TimedRow> rows;
   std::vector<Contradiction> contradictions;
@@ -383,7 +383,7 @@ int benchRobot(RobotBenchOptions& options) {
   if (options.no_fcl && options.only.find("FCL") != std::string::npos) {
     throw std::invalid_argument("--only '" + options.only + "' is a row of FCL's: leave --no-fcl out");
   }
-  Asked asked(options.world, options.visibility);
+  MeasuredRobot asked(options.world, options.visibility);
   RandomMotions random(asked.tree(), options.angle * kRadiansPerDegree, options.seed);
   const Questions questions = asked.questions(!options.no_fcl);
   Outcome outcome{options, asked, {}, {}, {}};

@@ -26,8 +26,8 @@
 #include "exit_status.h"
 #include "fcl_artic/certificate.h"
 #include "files/files.h"
+#include "outputs.h"
 #include "report/request_json.h"
-#include "text/one_line.h"
 #include "threads/parallel.h"
 
 namespace fcl_artic::app {
@@ -176,11 +176,11 @@ class Stage {
  private:
   /// Prints each note once. If there are more than anybody would read, prints only the first ones.
   void tellNotes(std::size_t scene, const std::vector<std::string>& notes) {
-    constexpr std::size_t kMostTold = 50;
+    constexpr std::size_t kMaxTold = 50;
     for (const std::string& note : notes) {
-      if (!speaks_ || !told_.insert(note).second || ++num_told_ > kMostTold) continue;
-      fmt::print(stderr, "fcl_artic: note: scene {} ('{}'): {}\n", scene, scenes_.name(scene), text::oneLine(note));
-      if (num_told_ == kMostTold) fmt::print(stderr, "fcl_artic: note: notes of further scenes are not printed\n");
+      if (!speaks_ || !told_.insert(note).second || ++num_told_ > kMaxTold) continue;
+      printNotes({note}, fmt::format("scene {} ('{}')", scene, scenes_.name(scene)));
+      if (num_told_ == kMaxTold) fmt::print(stderr, "fcl_artic: note: notes of further scenes are not printed\n");
     }
   }
 
@@ -301,17 +301,17 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
   const bool speaks = ranks.rank() == 0 && !o.quiet;
   Stage stage(world, scenes, !o.quiet);
   if (speaks) {
-    for (const std::string& note : world.notes(stage.manager())) fmt::print(stderr, "fcl_artic: note: {}\n", note);
-    for (const std::string& note : scenes.notes()) fmt::print(stderr, "fcl_artic: note: {}\n", note);
+    printNotes(world.notes(stage.manager()));
+    printNotes(scenes.notes());
   }
   const int threads = o.threads == 0 && ranks.size() > 1 ? 1 : o.threads;
   Answerer answerer(stage, edges, o, *folder, threads);
   const Cut cut = folder->cut();
   EdgeProgress progress(ranks.share() * static_cast<double>(cut.rows()), speaks);
   std::vector<std::string> errors;  // each once, whatever the number of blocks that meet it
-  std::set<std::string> told;
-  const auto tell = [&](const char* error) {
-    if (told.insert(error).second) errors.emplace_back(error);
+  std::set<std::string> noted;
+  const auto noteError = [&](const char* error) {
+    if (noted.insert(error).second) errors.emplace_back(error);
   };
   std::set<std::size_t> bad_scenes;
   Counts counts;
@@ -331,11 +331,11 @@ Outcome computeBlocks(const WorldOptions& world_options, EdgesOptions& o, Ranks&
         counts.add(answerer.rows());
       }
     } catch (const SceneError& error) {
-      tell(error.what());
+      noteError(error.what());
       if (!cut.scene_of_edge) bad_scenes.insert(cut.sceneOf(block));
       continue;
     } catch (const std::runtime_error& error) {
-      tell(error.what());
+      noteError(error.what());
       continue;
     }
     if (is_new) {

@@ -17,6 +17,7 @@
 #include "hdf5/hdf5.h"
 #include "outputs.h"
 #include "random_motions.h"
+#include "text/counted.h"
 #include "usage.h"
 
 namespace fcl_artic::app {
@@ -106,7 +107,7 @@ void addGenerateEdges(CLI::App& generate, int& exit_status) {
   verb->add_option("OUT.h5", edges->path, "File to write")->required();
   verb->callback([edges, &exit_status] {
     writeEdges(*edges);
-    fmt::print("{} edges written to {}\n", edges->count, edges->path);
+    fmt::print("{} written to {}\n", text::counted(edges->count, "edge"), edges->path);
     exit_status = kExitFree;
   });
 
@@ -127,7 +128,7 @@ void addGenerateEdges(CLI::App& generate, int& exit_status) {
   verb->add_option("OUT.h5", scenes->path, "File to write")->required();
   verb->callback([scenes, &exit_status] {
     writeScenes(*scenes);
-    fmt::print("{} scenes written to {}\n", scenes->count, scenes->path);
+    fmt::print("{} written to {}\n", text::counted(scenes->count, "scene"), scenes->path);
     exit_status = kExitFree;
   });
 }

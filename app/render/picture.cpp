@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "angles.h"
+#include "kinematics/angles.h"
 #include "renderer.h"
 #include "text.h"
 #include "triangles.h"

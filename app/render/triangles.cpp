@@ -17,8 +17,8 @@
 #include <fcl/geometry/shape/plane.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/geometry/shape/triangle_p.h>
-#include "angles.h"
 #include "fcl_artic/point_cloud.h"
+#include "kinematics/angles.h"
 #if FCL_HAVE_OCTOMAP
 #include <fcl/geometry/octree/octree.h>
 #endif

@@ -31,8 +31,8 @@ using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
 // As much as a browser draws fluently, and as a page of some ten megabytes holds.
-constexpr std::size_t kMostTriangles = 1000000, kMostBalls = 500000;
-constexpr std::size_t kFewestPoses = 360, kMostPoses = 3000, kPosesForPiece = 4;
+constexpr std::size_t kMaxTriangles = 1000000, kMaxBalls = 500000;
+constexpr std::size_t kFewestPoses = 360, kMaxPoses = 3000, kPosesForPiece = 4;
 
 std::string base64(const void* data, std::size_t size) {
   static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -189,13 +189,13 @@ class Shapes {
     Vector3d center = Vector3d::Zero();
   };
   std::map<const fcl::CollisionGeometryd*, Content> content_;
-  Thinning triangles_{kMostTriangles}, balls_{kMostBalls};
+  Thinning triangles_{kMaxTriangles}, balls_{kMaxBalls};
   Json json_ = Json::array();
 };
 
 /// Times of the poses on the page: evenly over the motion, and the ends of brackets.
 std::vector<double> timesOfPoses(const Report& report) {
-  const std::size_t count = std::clamp(kPosesForPiece * report.pieces, kFewestPoses, kMostPoses);
+  const std::size_t count = std::clamp(kPosesForPiece * report.pieces, kFewestPoses, kMaxPoses);
   std::set<double> times{report.begin, report.end};
   for (std::size_t i = 1; i < count; ++i) {
     times.insert(report.begin + (report.end - report.begin) * static_cast<double>(i) / static_cast<double>(count));

@@ -6,9 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "angles.h"
+#include "kinematics/angles.h"
 #include "request_json.h"
 #include "stage2.h"
+#include "text/counted.h"
 #include "text/one_line.h"
 
 namespace fcl_artic::app {
@@ -105,9 +106,11 @@ std::string clearanceText(const KinematicTree& tree, const Clearance& c) {
 
 std::string statisticsText(const QueryStatistics& s) {
   return fmt::format(
-      "{} pairs, {} left by the swept bounds; {} node tests, {} leaf tests, {} certificates, {} witness searches, {} "
-      "contact proofs; {:.3f} ms (culling {:.3f}, narrow phase {:.3f}, report {:.3f})",
-      s.pairs, s.pairs_after_culling, s.node_tests, s.leaf_tests, s.certificates, s.gjk, s.contact_proofs,
+      "{}, {} left by the swept bounds; {}, {}, {}, {}, {}; {:.3f} ms (culling {:.3f}, narrow phase {:.3f}, report "
+      "{:.3f})",
+      text::counted(s.pairs, "pair"), s.pairs_after_culling, text::counted(s.node_tests, "node test"),
+      text::counted(s.leaf_tests, "leaf test"), text::counted(s.certificates, "certificate"),
+      text::counted(s.gjk, "witness search", "witness searches"), text::counted(s.contact_proofs, "contact proof"),
       s.total_us * 1e-3, s.culling_us * 1e-3, s.narrowphase_us * 1e-3, s.report_us * 1e-3);
 }
 

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "text/counted.h"
+
 namespace fcl_artic::app {
 
 using Json = nlohmann::ordered_json;
@@ -35,10 +37,10 @@ Json visibilityJson(VisibilityMode mode, const QueryStatistics& s) {
 std::string visibilityText(const QueryStatistics& s) {
   if (s.visibility_executor.empty()) return "not used";
   const VisibilityStatistics& v = s.visibility;
-  return fmt::format(
-      "executor {}: {} pairs seen, {} proven free, and {} nodes of others; {} pieces drawn, {} queries {}{}",
-      s.visibility_executor, v.pairs, v.culled, v.nodes, v.pieces, v.repeated, "solved again",
-      s.visibility_fallback.empty() ? "" : " (" + s.visibility_fallback + ")");
+  return fmt::format("executor {}: {} seen, {} proven free, and {} of others; {} drawn, {} solved again{}",
+                     s.visibility_executor, text::counted(v.pairs, "pair"), v.culled, text::counted(v.nodes, "node"),
+                     text::counted(v.pieces, "piece"), text::counted(v.repeated, "query", "queries"),
+                     s.visibility_fallback.empty() ? "" : " (" + s.visibility_fallback + ")");
 }
 
 }  // namespace fcl_artic::app

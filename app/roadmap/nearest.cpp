@@ -46,7 +46,7 @@ std::size_t NearestPoints::build(std::size_t begin, std::size_t end) {
 }
 
 void NearestPoints::search(std::size_t number, const double* from, std::size_t self, std::size_t k,
-                           std::vector<Found>& found) const {
+                           std::vector<Neighbour>& found) const {
   const Node& node = nodes_[number];
   if (node.axis < 0) {
     for (std::size_t i = node.begin; i < node.end; ++i) {
@@ -56,7 +56,7 @@ void NearestPoints::search(std::size_t number, const double* from, std::size_t s
         const double apart = point(order_[i])[d] - from[d];
         squared += apart * apart;
       }
-      const Found one{squared, static_cast<std::int64_t>(order_[i])};
+      const Neighbour one{squared, static_cast<std::int64_t>(order_[i])};
       if (found.size() == k && !(one < found.front())) continue;
       if (found.size() == k) {
         std::pop_heap(found.begin(), found.end());
@@ -76,11 +76,11 @@ void NearestPoints::search(std::size_t number, const double* from, std::size_t s
 }
 
 std::vector<std::int64_t> NearestPoints::of(std::size_t i, std::size_t k) const {
-  std::vector<Found> found;
+  std::vector<Neighbour> found;
   if (k > 0 && !nodes_.empty()) search(0, point(i), i, k, found);
   std::sort(found.begin(), found.end());
   std::vector<std::int64_t> numbers;
-  for (const Found& one : found) numbers.push_back(one.number);
+  for (const Neighbour& one : found) numbers.push_back(one.number);
   return numbers;
 }
 

@@ -25,15 +25,16 @@ class NearestPoints {
     double at = 0;                     ///< where it is cut
     std::size_t below = 0, above = 0;  ///< nodes
   };
-  struct Found {
+  struct Neighbour {
     double squared;
     std::int64_t number;
-    bool operator<(const Found& other) const {
+    bool operator<(const Neighbour& other) const {
       return squared != other.squared ? squared < other.squared : number < other.number;
     }
   };
   std::size_t build(std::size_t begin, std::size_t end);
-  void search(std::size_t node, const double* point, std::size_t self, std::size_t k, std::vector<Found>& found) const;
+  void search(std::size_t node, const double* point, std::size_t self, std::size_t k,
+              std::vector<Neighbour>& found) const;
   const double* point(std::size_t i) const { return points_.data() + i * dimensions_; }
 
   const std::vector<double>& points_;

@@ -68,10 +68,10 @@ Roadmap makeRoadmap(const ArticulatedCollisionManager& manager, const CertifiedR
   std::vector<JointMotion> motions;
   std::vector<CertifiedResult> results;
   std::vector<Eigen::VectorXd> drawn;
-  constexpr std::size_t kMostPerVertex = 1000;
+  constexpr std::size_t kMaxPerVertex = 1000;
   std::size_t draws = 0;
   while (roadmap.numVertices() < options.vertices) {
-    if (draws > kMostPerVertex * (roadmap.numVertices() + 10)) {
+    if (draws > kMaxPerVertex * (roadmap.numVertices() + 10)) {
       throw std::runtime_error(
           fmt::format("roadmap: of {} random configurations only {} are proven free", draws, roadmap.numVertices()));
     }

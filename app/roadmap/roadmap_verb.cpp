@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "roadmap/roadmap_verb.h"
 
-#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <stdexcept>
@@ -18,9 +17,10 @@
 #include "outputs.h"
 #include "plans/motion.h"
 #include "plans/plan.h"
+#include "plans/variables.h"
 #include "query_options.h"
 #include "roadmap/roadmap.h"
-#include "text/nearest_name.h"
+#include "text/counted.h"
 #include "usage.h"
 #include "world.h"
 
@@ -35,38 +35,31 @@ struct RoadmapVerb {
   bool valid_only = false, any = false;
 };
 
-void tellNotes(const World& world, const ArticulatedCollisionManager& manager) {
-  for (const std::string& note : world.notes(manager)) fmt::print(stderr, "fcl_artic: note: {}\n", note);
-}
-
 /// The waypoints of a file's plans, which name all joints.
 std::vector<Eigen::VectorXd> readConfigurations(const KinematicTree& tree, const std::string& path) {
   std::vector<Eigen::VectorXd> configurations;
-  std::vector<std::string> known;
-  for (int v = 0; v < tree.dof(); ++v) known.push_back(tree.variableName(v));
   const auto fail = [&](const std::string& why) { throw std::invalid_argument(fmt::format("'{}': {}", path, why)); };
   for (const plans::Plan& plan : plans::parsePlans(tree, files::read(path), plans::formatOf(path))) {
     if (!plan.error.empty()) fail(plan.error);
-    for (const std::vector<std::string>& notes : {plan.notes, plans::unitNotes(plan, false)}) {
-      for (const std::string& note : notes) fmt::print(stderr, "fcl_artic: note: '{}': {}\n", path, note);
+    printNotes(plans::notesOf(plan, false), "'" + path + "'");
+    std::vector<int> variables;  // of the columns
+    std::vector<bool> given(static_cast<std::size_t>(tree.dof()), plan.joints.empty());
+    for (int v = 0; plan.joints.empty() && v < tree.dof(); ++v) variables.push_back(v);
+    for (const std::string& joint : plan.joints) {
+      variables.push_back(plans::variableOf(tree, joint, fmt::format("'{}'", path)));
+      if (given[static_cast<std::size_t>(variables.back())]) fail(fmt::format("joint '{}' is there twice", joint));
+      given[static_cast<std::size_t>(variables.back())] = true;
     }
-    const std::vector<std::string>& joints = plan.joints.empty() ? known : plan.joints;
-    for (const std::string& joint : known) {
-      if (std::find(joints.begin(), joints.end(), joint) == joints.end()) {
-        fail(fmt::format("it has no joint '{}': a roadmap's configurations are of all joints", joint));
-      }
+    for (int v = 0; v < tree.dof(); ++v) {
+      if (given[static_cast<std::size_t>(v)]) continue;
+      fail(fmt::format("it has no joint '{}': a roadmap's configurations are of all joints", tree.variableName(v)));
     }
     for (const std::vector<double>& row : plan.positions) {
-      if (row.size() != joints.size())
-        fail(fmt::format("a row has {} values for {} joints", row.size(), joints.size()));
+      if (row.size() != variables.size())
+        fail(fmt::format("a row has {} for {}", text::counted(row.size(), "value"),
+                         text::counted(variables.size(), "joint")));
       Eigen::VectorXd q(tree.dof());
-      for (std::size_t j = 0; j < joints.size(); ++j) {
-        const auto at = std::find(known.begin(), known.end(), joints[j]);
-        if (at == known.end())
-          fail(fmt::format("robot '{}' has no joint '{}'{}", tree.name(), joints[j],
-                           text::didYouMean(joints[j], known)));
-        q[at - known.begin()] = row[j];
-      }
+      for (std::size_t j = 0; j < row.size(); ++j) q[variables[j]] = row[j];
       configurations.push_back(std::move(q));
     }
   }
@@ -85,7 +78,7 @@ void judgeLimits(const KinematicTree& tree, const char* what, std::size_t count,
       if (!why.empty()) throw std::invalid_argument(fmt::format("roadmap: {} {}: {}", what, i, why));
     }
   }
-  for (const std::string& note : limits.notes()) fmt::print(stderr, "fcl_artic: note: of {}: {}\n", what, note);
+  printNotes(limits.notes(), fmt::format("of {}", what));
 }
 
 /// Removes files of an earlier run, which must not be taken for this run's.
@@ -108,15 +101,15 @@ int make(RoadmapVerb& o) {
   if (!o.given.empty()) o.make.given = readConfigurations(tree, o.given);
   judgeLimits(tree, "given configuration", o.make.given.size(), [&](std::size_t i) { return o.make.given[i]; });
   const ArticulatedCollisionManager manager = world.makeManager();
-  tellNotes(world, manager);
+  printNotes(world.notes(manager));
   const auto begin = Clock::now();
   std::size_t tried = 0;
   Roadmap roadmap = makeRoadmap(manager, o.request, o.make, tried);
   roadmap.robot = robotHash(world);
   const double seconds = secondsSince(begin);
   world.unwritten.attempt([&] { writeRoadmap(roadmap, o.out, false); });
-  fmt::print("{} vertices, {} of {} edges proven free, in {:.1f} s: {}\n", roadmap.numVertices(), roadmap.numEdges(),
-             tried, seconds, o.out);
+  fmt::print("{}, {} of {} proven free, in {:.1f} s: {}\n", text::counted(roadmap.numVertices(), "vertex", "vertices"),
+             roadmap.numEdges(), text::counted(tried, "edge"), seconds, o.out);
   return world.unwritten.exitStatus(kExitFree);
 }
 
@@ -128,7 +121,7 @@ int certify(RoadmapVerb& o) {
   judgeLimits(*world.robot.tree, "vertex", roadmap.numVertices(),
               [&](std::size_t i) { return roadmap.configuration(i); });
   const ArticulatedCollisionManager manager = world.makeManager();
-  tellNotes(world, manager);
+  printNotes(world.notes(manager));
   bool proven = false;  // something of all edges, before
   if (o.request.check_self) {
     // The proof from when the roadmap was made holds for every scene, if the robot is the same and the margin no
@@ -152,8 +145,8 @@ int certify(RoadmapVerb& o) {
   world.unwritten.attempt([&] { writeRoadmap(roadmap, o.out, o.valid_only); });
   Counts counts;
   counts.add(roadmap.answers);
-  fmt::print("{} edges in {:.3f} s: {} free, {} contact, {} undecided: {}\n", roadmap.numEdges(), seconds,
-             counts[RowStatus::free], counts[RowStatus::contact], counts[RowStatus::undecided], o.out);
+  fmt::print("{} in {:.3f} s: {} free, {} contact, {} undecided: {}\n", text::counted(roadmap.numEdges(), "edge"),
+             seconds, counts[RowStatus::free], counts[RowStatus::contact], counts[RowStatus::undecided], o.out);
   int status = kExitFree;
   if (roadmap.numEdges() == 0 || !(checked || proven)) {
     fmt::print("NOTHING CHECKED: {}\n",

@@ -8,6 +8,7 @@ int main(int argc, char** argv) {
   return runProgram(argc, argv, [](CLI::App& program, int& exit_status) {
     addTable1(program, exit_status);
     addIdeas(program, exit_status);
+    addCompare(program, exit_status);
 #ifdef FCL_ARTIC_HAS_PLANS
     addPlanning(program, exit_status);
     addCertifyPlans(program, exit_status);

@@ -9,15 +9,15 @@
 #include <fcl/math/bv/OBBRSS.h>
 #include <fmt/format.h>
 
-#include "angles.h"
 #include "generator.h"
+#include "kinematics/angles.h"
 #include "step_costs.h"
 #include "usage.h"
 
 namespace fcl_artic::app {
 namespace {
 
-constexpr std::size_t kMostTrajectories = 200000;  // then the scene is taken to have no more steps of a kind
+constexpr std::size_t kMaxTrajectories = 200000;  // then the scene is taken to have no more steps of a kind
 
 Robot makePuma() {
   const std::filesystem::path folder =
@@ -134,11 +134,11 @@ CloseSteps closeSteps(const PumaInPipes& scenery, const PipeOptions& o, double d
   near.margin = o.closeness;
   CertifiedResult result;
   for (std::size_t n = 0; steps.colliding.size() < o.queries || steps.free.size() < o.queries; ++n) {
-    if (n == kMostTrajectories) {
+    if (n == kMaxTrajectories) {
       throw std::runtime_error(fmt::format(
           "{} trajectories in steps of {:g} degrees have {} steps that hit a pipe and {} "
           "free ones within {:g} m of one; {} of each were asked for",
-          kMostTrajectories, steps.degrees, steps.colliding.size(), steps.free.size(), o.closeness, o.queries));
+          kMaxTrajectories, steps.degrees, steps.colliding.size(), steps.free.size(), o.closeness, o.queries));
     }
     Eigen::VectorXd q = space.configuration();
     const Eigen::VectorXd step = angle * space.direction();

@@ -12,6 +12,9 @@ namespace fcl_artic::app {
 void addTable1(CLI::App& program, int& exit_status);
 /// Adds `ideas`: what each option of the paper's method is worth.
 void addIdeas(CLI::App& program, int& exit_status);
+/// Adds `compare`: random pairs of moving bodies through FCL's ways and through this library; kExitFree when this
+/// library was right throughout.
+void addCompare(CLI::App& program, int& exit_status);
 
 // These three need OMPL.
 /// Adds `planning`: plans of RRTConnect with OMPL's discrete validator over FCL, and with ours.

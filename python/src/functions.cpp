@@ -21,8 +21,8 @@ constexpr struct {
 };
 
 /// The function of pybind11 that runs any of its functions, which it knows by the first argument.
-using Run = PyObject* (*)(PyObject*, PyObject*, PyObject*);
-Run pybind_run = nullptr;
+using CallFunction = PyObject* (*)(PyObject*, PyObject*, PyObject*);
+CallFunction pybind_run = nullptr;
 
 struct Function {
   std::string name, lines;  ///< of the stub; no lines: it is none of the stub's
@@ -64,7 +64,7 @@ PyObject* run(PyObject* self, PyObject* arguments, PyObject* options) {
   return result;
 }
 
-PyCFunction asMethod(Run function) {
+PyCFunction asMethod(CallFunction function) {
   return reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(function));
 }
 
@@ -144,7 +144,7 @@ void completeAll(py::handle owner, const std::string& prefix) {
 
 void completeFunctions(const py::module_& module) {
   const py::cpp_function any([] {});
-  pybind_run = reinterpret_cast<Run>(
+  pybind_run = reinterpret_cast<CallFunction>(
       reinterpret_cast<void (*)()>(reinterpret_cast<PyCFunctionObject*>(any.ptr())->m_ml->ml_meth));
   completeAll(module, "");
 }

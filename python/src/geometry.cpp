@@ -22,6 +22,7 @@
 #include "fcl_artic/solid_mesh.h"
 #include "hull.h"
 #include "options.h"
+#include "text/counted.h"
 
 namespace fcl_artic::python {
 namespace {
@@ -170,8 +171,8 @@ Geometry points(py::handle points, py::handle radius) {
     const Eigen::VectorXd each = vectorOf(radius, "radius");
     radii.assign(each.data(), each.data() + each.size());
     if (radii.size() != places.size()) {
-      valueError("there are " + std::to_string(places.size()) + " points and " + std::to_string(radii.size()) +
-                 " radii");
+      valueError("there are " + text::counted(places.size(), "point") + " and " +
+                 text::counted(radii.size(), "radius", "radii"));
     }
   } else {
     radii.push_back(lengthOf(radius, "radius"));
@@ -340,14 +341,14 @@ void bindGeometry(py::module_& module) {
            [](const Geometry& g) -> std::string {
              if (const auto* model = asMesh(*g.shape)) {
                return "<Geometry: " + std::string(dynamic_cast<const SolidMark*>(g.shape.get()) ? "solid " : "") +
-                      "mesh of " + std::to_string(model->num_tris) + " triangles>";
+                      "mesh of " + text::counted(model->num_tris, "triangle") + ">";
              }
              const py::tuple state = geometryState(g);
              const std::string kind = py::str(state[0]);
-             if (kind == "points") return "<Geometry: " + std::to_string(py::len(state[1])) + " points>";
+             if (kind == "points") return "<Geometry: " + text::counted(py::len(state[1]), "point") + ">";
              if (kind == "octree") return "<Geometry: octree, cells of " + std::string(py::str(state[1])) + " m>";
              std::string text = "<Geometry: " + kind;
-             if (kind == "convex") return text + ", " + std::to_string(py::len(state[1])) + " vertices>";
+             if (kind == "convex") return text + ", " + text::counted(py::len(state[1]), "vertex", "vertices") + ">";
              for (std::size_t i = 1; i < state.size(); ++i)
                text += (i == 1 ? " " : ", ") + std::string(py::str(state[i]));
              return text + ">";

@@ -32,7 +32,7 @@ auto guardFiles(const std::string& path, Read&& read) {
   }
 }
 
-/// Writes files that belong together. A failure is an OSError. To be called with the GIL held.
+/// Writes files that belong together. A file that cannot be written is an OSError. To be called with the GIL held.
 inline void writeFiles(const std::vector<files::File>& all) {
   try {
     files::writeTogether(all);

@@ -9,6 +9,7 @@
 #include "fcl_artic/in_between.h"
 #include "fcl_artic/tool_line.h"
 #include "recipe.h"
+#include "text/counted.h"
 #include "text/nearest_name.h"
 
 namespace fcl_artic::python {
@@ -138,7 +139,9 @@ py::tuple treeState(const Tree& t) {
 Tree treeOfState(const py::tuple& s) {
   Tree tree = treeInBuilding(py::cast<std::string>(s[0]));
   for (const py::handle link : py::list(s[1])) tree.own->addLink(py::cast<std::string>(link));
-  for (const py::handle joint : py::list(s[2])) tree.own->addJoint(py::cast<const Joint&>(joint));
+  std::vector<Joint> joints;
+  for (const py::handle joint : py::list(s[2])) joints.push_back(py::cast<const Joint&>(joint));
+  tree.own->addJoints(joints);
   if (py::cast<bool>(s[3])) tree.own = nullptr;
   return tree;
 }
@@ -237,8 +240,9 @@ void bindTree(py::module_& module) {
           "One line of text for each variable beyond its joint's limits.", py::arg("q"))
       .def("__repr__",
            [](const Tree& t) {
-             return py::str("<KinematicTree {!r}: {} links, {} variables>")
-                 .format(t.tree->name(), t.tree->numLinks(), t.tree->dof());
+             return py::str("<KinematicTree {!r}: {}, {}>")
+                 .format(t.tree->name(), text::counted(t.tree->numLinks(), "link"),
+                         text::counted(t.tree->dof(), "variable"));
            })
       .def(py::pickle(&treeState, &treeOfState))
       .def(
@@ -331,8 +335,9 @@ void bindMotion(py::module_& module) {
       .def("__len__", &JointMotion::size)
       .def("__repr__",
            [](const JointMotion& m) {
-             return py::str("<JointMotion of {} variables, degree {}{}>")
-                 .format(m.size(), m.degree(), m.isPolynomial() ? "" : ", tangents of half angles");
+             return py::str("<JointMotion of {}, degree {}{}>")
+                 .format(text::counted(m.size(), "variable"), m.degree(),
+                         m.isPolynomial() ? "" : ", tangents of half angles");
            })
       .def("__reduce__", [](const py::object& self) { return py::cast<const MadeMotion&>(self).recipe.reduced(self); });
 
@@ -448,15 +453,15 @@ void bindTrajectory(py::module_& module) {
           [](const py::object& self, std::size_t k) {
             const auto& t = py::cast<const JointTrajectory&>(self);
             if (k >= t.numPieces())
-              throw py::index_error("the trajectory has " + std::to_string(t.numPieces()) + " pieces");
+              throw py::index_error("the trajectory has " + text::counted(t.numPieces(), "piece"));
             return MadeMotion(t.piece(k), Recipe("piece", py::make_tuple(k), self));
           },
           "Piece k as a motion over t in [0, 1].", py::arg("k"))
       .def("__len__", &JointTrajectory::numPieces)
       .def("__repr__",
            [](const JointTrajectory& t) {
-             return py::str("<JointTrajectory of {} pieces from {} to {}>")
-                 .format(t.numPieces(), t.beginTime(), t.endTime());
+             return py::str("<JointTrajectory of {} from {} to {}>")
+                 .format(text::counted(t.numPieces(), "piece"), t.beginTime(), t.endTime());
            })
       .def("__reduce__",
            [](const py::object& self) { return py::cast<const MadeTrajectory&>(self).recipe.reduced(self); });

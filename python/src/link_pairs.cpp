@@ -5,6 +5,7 @@
 
 #include "enums.h"
 #include "robot.h"
+#include "text/counted.h"
 #include "watch.h"
 
 namespace fcl_artic::python {
@@ -87,7 +88,7 @@ void bindLinkPairs(py::module_& module) {
           py::arg("robot_name"))
       .def("__len__", [](const LinkPairReport& r) { return r.pairs.size(); })
       .def("__repr__", [](const LinkPairReport& r) {
-        std::string text = "<LinkPairReport: " + std::to_string(r.pairs.size()) + " pairs";
+        std::string text = "<LinkPairReport: " + text::counted(r.pairs.size(), "pair");
         for (const auto kind :
              {LinkPairKind::never, LinkPairKind::always, LinkPairKind::sometimes, LinkPairKind::unproven}) {
           text += ", " + std::to_string(r.count(kind)) + " " + toString(kind);

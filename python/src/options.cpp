@@ -97,13 +97,13 @@ const std::vector<Option<Request>>& requestOptions() {
   return options;
 }
 
-struct Asked {
+struct ClearanceCall {
   ClearanceRequest request;
   py::object progress = py::none();
 };
 
-const std::vector<Option<Asked>>& clearanceOptions() {
-  using A = Asked;
+const std::vector<Option<ClearanceCall>>& clearanceOptions() {
+  using A = ClearanceCall;
   using C = ClearanceRequest;
   const auto of = [](const char* name, auto member) { return option<A>(name, kRequest, member); };
   static const std::vector<Option<A>> options{of("tolerance_relative", &C::tolerance_relative),
@@ -210,7 +210,7 @@ Request readRequest(const py::kwargs& options) {
 }
 
 ClearanceRequest readClearanceRequest(const py::kwargs& options, py::object& progress) {
-  Asked asked;
+  ClearanceCall asked;
   setAll(asked, clearanceOptions(), options);
   progress = asked.progress;
   return asked.request;

@@ -72,7 +72,7 @@ py::object picture(const World& world, py::handle q0, py::handle q1, const Certi
       obstacles.push_back({body.name, objectOf({shape}, body.pose)});
     }
   }
-  for (const World::Mover& mover : world.movers()) {
+  for (const World::MovingObstacle& mover : world.movers()) {
     const auto shape = std::const_pointer_cast<fcl::CollisionGeometryd>(mover.object->collisionGeometry());
     obstacles.push_back({mover.name, objectOf({shape}, mover.motion.pose(at))});
   }

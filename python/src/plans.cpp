@@ -47,7 +47,8 @@ py::tuple planState(const LoadedPlan& p) {
   return py::make_tuple(
       treeOfRobot(p.tree),
       py::make_tuple(p.plan.name, p.plan.joints, p.plan.times, p.plan.positions, p.plan.velocities,
-                     p.plan.accelerations, p.plan.state, carried, p.plan.has_degrees, p.plan.notes, p.plan.error),
+                     p.plan.accelerations, p.plan.state, carried, p.plan.has_degrees, p.plan.notes, p.plan.error,
+                     p.plan.joints_counted, p.plan.foreign, p.plan.other_angles, p.plan.other_units),
       py::make_tuple(static_cast<int>(o.interpolation), o.blend, static_cast<int>(o.turns), o.ignore_limits,
                      o.limit_tolerance, o.degrees, o.joints, o.state));
 }
@@ -70,6 +71,10 @@ LoadedPlan planOfState(const py::tuple& state) {
   read(given, i++, plan.has_degrees);
   read(given, i++, plan.notes);
   read(given, i++, plan.error);
+  read(given, i++, plan.joints_counted);
+  read(given, i++, plan.foreign);
+  read(given, i++, plan.other_angles);
+  read(given, i++, plan.other_units);
   for (const auto& [name, link] : carried) plan.carried.push_back({name, link});
   plans::MotionOptions options;
   options.interpolation = static_cast<plans::Interpolation>(py::cast<int>(how[0]));
@@ -187,7 +192,10 @@ void bindPlans(py::module_& module, py::class_<World>& world) {
           },
           "Objects that the message says the robot carries.")
       .def_property_readonly(
-          "notes", [](const LoadedPlan& p) { return textsOf(p.motion ? p.motion->notes : p.plan.notes); },
+          "notes",
+          [](const LoadedPlan& p) {
+            return textsOf(p.motion ? p.motion->notes : plans::notesOf(p.plan, p.options.degrees));
+          },
           "What was accepted though unusual.")
       .def(
           "waypoint_before", [](const LoadedPlan& p, double t) { return p.require().waypointBefore(t); },

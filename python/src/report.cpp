@@ -31,7 +31,7 @@ std::vector<app::PageBody> bodiesOf(const World& world, double begin, double len
                       b.object->collisionGeometry(),
                       {}});
   }
-  for (const World::Mover& m : world.movers()) {
+  for (const World::MovingObstacle& m : world.movers()) {
     bodies.push_back({m.name, "moving obstacle", -1, Eigen::Isometry3d::Identity(), m.object->collisionGeometry(),
                       [motion = m.motion, begin, length](double t) { return motion.pose((t - begin) / length); }});
   }

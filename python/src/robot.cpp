@@ -9,6 +9,7 @@
 #include <cerrno>
 
 #include "link_pairs.h"
+#include "text/counted.h"
 
 namespace fcl_artic::python {
 namespace {
@@ -234,8 +235,10 @@ void bindRobot(py::module_& module) {
       .def_property_readonly("reach", [](const Robot& r) { return reachUpper(*r.tree, r.geometry); })
       .def("__repr__",
            [](const Robot& r) {
-             return py::str("<Robot {!r}: {} links, {} variables, {} geometries>")
-                 .format(r.tree->name(), r.tree->numLinks(), r.tree->dof(), r.geometry.size());
+             return py::str("<Robot {!r}: {}, {}, {}>")
+                 .format(r.tree->name(), text::counted(r.tree->numLinks(), "link"),
+                         text::counted(r.tree->dof(), "variable"),
+                         text::counted(r.geometry.size(), "geometry", "geometries"));
            })
       .def(py::pickle(&robotState, &robotOfState));
 

@@ -8,6 +8,7 @@
 #include "guard_files.h"
 #include "kinematics.h"
 #include "robot.h"
+#include "text/counted.h"
 #include "text/nearest_name.h"
 
 namespace fcl_artic::python {
@@ -104,7 +105,7 @@ void bindScene(py::module_& module) {
            })
       .def("__iter__", [](const Scene& s) { return py::iter(py::cast(s.obstacles)); })
       .def("__len__", [](const Scene& s) { return s.obstacles.size(); })
-      .def("__repr__", [](const Scene& s) { return py::str("<Scene: {} obstacles>").format(s.obstacles.size()); })
+      .def("__repr__", [](const Scene& s) { return "<Scene: " + text::counted(s.obstacles.size(), "obstacle") + ">"; })
       .def(py::pickle(&sceneState, &sceneOfState));
 
   module.def(

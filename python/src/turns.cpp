@@ -60,7 +60,7 @@ void waitUntil(Lock& lock, const Ready& ready) {
   }
 }
 
-void tell() {
+void wakeWaiting() {
   if (common()->waiting > 0) common()->moved.notify_all();
 }
 
@@ -92,7 +92,7 @@ PartOf::~PartOf() {
   const Lock lock(common()->mutex);
   leave();
   Doings::here() = {};
-  tell();
+  wakeWaiting();
 }
 
 InLibrary::InLibrary() {
@@ -103,7 +103,7 @@ InLibrary::InLibrary() {
 InLibrary::~InLibrary() {
   const Lock lock(common()->mutex);
   leave();
-  tell();
+  wakeWaiting();
 }
 
 /// Forgets threads of the parent process, if this one is a fork.
@@ -138,7 +138,7 @@ Turn::Turn(Kind kind, const Turns& of, const Turns* also) : kind_(kind) {
     std::vector<std::pair<const Turns*, std::list<bool>::iterator>> all;
     ~Places() {
       for (const auto& [turns, place] : all) turns->line_.erase(place);
-      tell();  // who stands behind
+      wakeWaiting();  // who stands behind
     }
   };
   {
@@ -176,7 +176,7 @@ Turn::~Turn() {
     (kind_ == asks ? here.asks : here.changes).pop_back();
   }
   leave();
-  tell();
+  wakeWaiting();
 }
 
 void Turn::ask() {
@@ -190,7 +190,7 @@ void Turn::ask() {
     here.changes.pop_back();
     here.asks.push_back(one);
   }
-  tell();
+  wakeWaiting();
 }
 
 namespace {
@@ -222,9 +222,9 @@ void watchEnd() {
     last_thread = std::this_thread::get_id();
     ending = true;
     // A call may be in a callback that does not come back. It holds the GIL there no more than any thread of Python's.
-    constexpr std::chrono::seconds kMost{2};
+    constexpr std::chrono::seconds kMax{2};
     const auto begin = std::chrono::steady_clock::now();
-    while (calls > 0 && std::chrono::steady_clock::now() - begin < kMost) {
+    while (calls > 0 && std::chrono::steady_clock::now() - begin < kMax) {
       const GilReleased released;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }

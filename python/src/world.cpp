@@ -14,6 +14,7 @@
 #include "options.h"
 #include "replay/query_file.h"
 #include "robot.h"
+#include "text/counted.h"
 #include "text/nearest_name.h"
 #include "watch.h"
 
@@ -28,7 +29,7 @@ std::vector<std::string> World::names() const {
   std::vector<std::string> names;
   for (LinkId l = 0; l < robot_.tree->numLinks(); ++l) names.push_back(robot_.tree->linkName(l));
   for (const Body& body : bodies_) names.push_back(body.name);
-  for (const Mover& mover : movers_) names.push_back(mover.name);
+  for (const MovingObstacle& mover : movers_) names.push_back(mover.name);
   return names;
 }
 
@@ -86,23 +87,23 @@ void World::add(const std::string& name, const Geometry& geometry, const Eigen::
 
 void World::addMoving(const std::string& name, const Geometry& geometry, const Motion& motion) {
   if (name.empty()) valueError("an obstacle needs a name");
-  const Mover mover{name,
-                    std::make_shared<fcl::ContinuousCollisionObjectd>(
-                        geometry.shape, std::const_pointer_cast<fcl::MotionBased>(motion.motion)),
-                    motion};
+  const MovingObstacle mover{name,
+                             std::make_shared<fcl::ContinuousCollisionObjectd>(
+                                 geometry.shape, std::const_pointer_cast<fcl::MotionBased>(motion.motion)),
+                             motion};
   manager_.change([&](ArticulatedCollisionManager& manager) { manager.registerObject(mover.object.get(), name); },
                   [&] { movers_.push_back(mover); });
 }
 
 void World::remove(const std::string& name) {
   const auto mover =
-      std::find_if(movers_.begin(), movers_.end(), [&](const Mover& other) { return other.name == name; });
+      std::find_if(movers_.begin(), movers_.end(), [&](const MovingObstacle& other) { return other.name == name; });
   if (mover != movers_.end()) {
     const auto object = mover->object;
     manager_.change([&](ArticulatedCollisionManager& manager) { manager.unregisterObject(object.get()); },
                     [&] {
                       movers_.erase(std::find_if(movers_.begin(), movers_.end(),
-                                                 [&](const Mover& m) { return m.object == object; }));
+                                                 [&](const MovingObstacle& m) { return m.object == object; }));
                     });
     return;
   }
@@ -235,7 +236,7 @@ std::vector<std::string> World::namesOf(const std::string& name) const {
 }
 
 int World::visit(visitproc visit, void* arg) const {
-  for (const Mover& mover : movers_) {
+  for (const MovingObstacle& mover : movers_) {
     if (const int status = mover.motion.recipe.visit(visit, arg)) return status;
   }
   return 0;
@@ -248,7 +249,7 @@ World::Body& World::ofObject(const std::shared_ptr<fcl::CollisionObjectd>& objec
 void World::refuseName(const std::string& name) const {
   std::vector<std::string> names;
   for (const Body& body : bodies_) names.push_back(body.name);
-  for (const Mover& mover : movers_) {
+  for (const MovingObstacle& mover : movers_) {
     if (mover.name == name) valueError("'" + name + "' moves by itself");
     names.push_back(mover.name);
   }
@@ -600,7 +601,8 @@ void bindWorld(py::module_& module) {
           "obstacles",
           [](const World& w) { return namesOf<World::Body>(w.bodies(), [](const auto& b) { return b.carrier < 0; }); })
       .def_property_readonly(
-          "moving", [](const World& w) { return namesOf<World::Mover>(w.movers(), [](const auto&) { return true; }); })
+          "moving",
+          [](const World& w) { return namesOf<World::MovingObstacle>(w.movers(), [](const auto&) { return true; }); })
       .def_property_readonly("attached",
                              [](const World& w) {
                                py::dict attached;
@@ -634,8 +636,9 @@ void bindWorld(py::module_& module) {
       .def("__repr__", [](const World& w) {
         std::size_t carried = 0;
         for (const World::Body& b : w.bodies()) carried += b.carrier >= 0;
-        return py::str("<World: robot {!r} with {} variables, {} obstacles, {} moving, {} attached>")
-            .format(w.tree()->name(), w.tree()->dof(), w.bodies().size() - carried, w.movers().size(), carried);
+        return py::str("<World: robot {!r} with {}, {}, {} moving, {} attached>")
+            .format(w.tree()->name(), text::counted(w.tree()->dof(), "variable"),
+                    text::counted(w.bodies().size() - carried, "obstacle"), w.movers().size(), carried);
       });
   bindChanges(world);
   bindQueries(world);

@@ -33,7 +33,7 @@ class World {
     std::vector<std::string> touch_links = {};
   };
   /// A body that moves by itself.
-  struct Mover {
+  struct MovingObstacle {
     std::string name;
     std::shared_ptr<fcl::ContinuousCollisionObjectd> object;
     Motion motion;
@@ -44,7 +44,7 @@ class World {
   const Robot& robot() const { return robot_; }
   std::shared_ptr<const KinematicTree> tree() const { return robot_.tree; }
   const std::vector<Body>& bodies() const { return bodies_; }
-  const std::vector<Mover>& movers() const { return movers_; }
+  const std::vector<MovingObstacle>& movers() const { return movers_; }
   /// Names of links, then of all else, in the order of their registration.
   std::vector<std::string> names() const;
   AllowedCollisionMatrix allowed() const;
@@ -83,7 +83,7 @@ class World {
   Guarded<ArticulatedCollisionManager> manager_;
   // Written with the GIL held while the manager changes, so that to hold one of the two is enough to read them.
   std::vector<Body> bodies_;
-  std::vector<Mover> movers_;
+  std::vector<MovingObstacle> movers_;
 };
 
 /// The motion of a question: straight from q0 to q1, a motion, or a trajectory.

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every public name of the C++ library is reachable in Python, or listed here with the reason why it is not."""
+import ast
 import enum
 import pathlib
 import re
@@ -186,6 +187,9 @@ MEMBERS = {
             "numVariables": "variables",
             "quaternionVariable": "variables",
             "quaternionJoints": "variables",
+            "addJoints": "add_joint",
+            "findJoint": "joints",
+            "findVariable": "variables",
             "mimicJoints": "joints",
             "parentJoint": "joints",
             "parentLink": "parent",
@@ -241,7 +245,7 @@ def public_names():
             names[component] = path
             continue
         for match in re.finditer(r"^\s*(?:class|struct|enum class)\s+(?:FCL_ARTIC_EXPORT\s+)?(\w+)\s*(?:final\s*)?[:{;]", text, re.M):
-            if match[1] not in ("Impl", "QueryContext", "BatchWithVisibility", "Turn", "Start", "Step"):
+            if match[1] not in ("Impl", "QueryContext", "BatchWithVisibility", "Turn", "Start", "Step", "Index"):
                 names[match[1]] = path
         for match in re.finditer(r"^using (\w+) =", text, re.M):
             names[match[1]] = path
@@ -280,6 +284,30 @@ def test_every_public_member_is_reachable_or_listed_with_the_reason(name):
     for place in elsewhere.values():
         if re.fullmatch(r"\w+", place):
             assert hasattr(python_class, place), place
+
+
+def test_a_field_of_a_request_stands_everywhere():
+    """Fields of C++, the table that the program and JSON go by, Python's keywords, the stub and the manual page."""
+    root = INCLUDE.parents[1]
+    text = re.sub(r"//.*", "", (INCLUDE / "request.h").read_text())
+    fields = {"progress"}  # a std::function
+    for name in ("Tolerances", "Effort", "Scope", "CertifiedPairRequest", "CertifiedRequest"):
+        body = re.search(rf"^struct {name}\b[^{{;]*{{(.*?)^}};", text, re.M | re.S)[1]
+        for line in re.findall(r"^  [\w:]+ (\w+(?: = [^,;]+)?(?:, \w+(?: = [^,;]+)?)*);", body, re.M):
+            fields |= {part.split(" = ")[0] for part in line.split(", ")}
+    assert len(fields) > 12
+    table = re.findall(r'RequestOption\{\s*"(\w+)"', (root / "src" / "query" / "request_options.h").read_text())
+    assert set(table) | {"progress"} == fields
+    assert {name for name, value in vars(fcl_artic.Request).items() if isinstance(value, property)} == fields
+    stub = ast.parse(pathlib.Path(fcl_artic.__file__).with_name("_fcl_artic.pyi").read_text())
+    (request,) = (node for node in stub.body if isinstance(node, ast.ClassDef) and node.name == "Request")
+    (init,) = (node for node in request.body if isinstance(node, ast.FunctionDef) and node.name == "__init__")
+    assert {argument.arg for argument in init.args.kwonlyargs} == fields
+    page = (root / "doc" / "man" / "fcl_artic.1").read_text()
+    asked = page[page.index("\n.B request\nWhat was asked:") :]
+    asked = asked[: asked.index("\n.TP")]
+    of_json = fields - {"progress", "redon", "visibility"}  # a call; the two that other objects of JSON tell
+    assert set(re.findall(r"^\.BR? (\w+)(?: [,.])?$", asked, re.M)) - {"request"} == of_json
 
 
 def test_names_are_all_told_and_documented():

@@ -118,7 +118,7 @@ def test_a_plans_trajectory_is_one(robot, tmp_path):
     (tmp_path / "a.json").write_text(json.dumps({"times": times, "waypoints": [FROM, TO]}))
     (plan,) = fcl_artic.load_plans(tmp_path / "a.json", robot)
     trajectory = plan.trajectory
-    assert type(trajectory) is fcl_artic.JointTrajectory and repr(trajectory).startswith("<JointTrajectory of 1 pieces")
+    assert type(trajectory) is fcl_artic.JointTrajectory and repr(trajectory).startswith("<JointTrajectory of 1 piece ")
     assert (trajectory.begin_time, trajectory.end_time, len(trajectory)) == (0.5, 2.5, 1)
     assert np.array_equal(trajectory.configuration(0.5), FROM)
     copy = pickle.loads(pickle.dumps(trajectory))
@@ -150,3 +150,14 @@ def test_plans_are_pickled(shared_world, robot, tmp_path):
         if not plan.carried:
             assert str(shared_world.certify(copy)) == str(shared_world.certify(plan))
     assert plans[0].interpolation == "cubic" and plans[0].carried == ["cup"] and plans[2].error
+
+
+def test_no_note_gets_lost(robot, tmp_path):
+    """Units that a comment speaks of are noted: for a plan, for one that is wrong, and for their copies."""
+    for last, wrong in ((ASIDE, False), ([100.0] + ASIDE[1:], True)):
+        rows = [",".join(robot.tree.variables)] + [",".join(map(str, q)) for q in (FROM, last)]
+        (tmp_path / "a.csv").write_text("# angles in degrees, lengths in mm\n" + "\n".join(rows) + "\n")
+        (plan,) = fcl_artic.load_plans(tmp_path / "a.csv", robot)
+        assert bool(plan.error) == wrong
+        for copy in (plan, pickle.loads(pickle.dumps(plan))):
+            assert [("angles are taken" in note, "lengths are taken" in note) for note in copy.notes] == [(True, False), (False, True)]

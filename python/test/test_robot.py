@@ -285,7 +285,7 @@ def test_a_mesh_is_taken_from_what_has_vertices_and_faces():
         (lambda: fcl_artic.points(np.zeros((0, 3)), 0.1), ValueError, "no point"),
         (lambda: fcl_artic.points([[0, 0, math.nan]], 0.1), ValueError, "point 0"),
         (lambda: fcl_artic.points([[0, 0, 0]], 0), ValueError, "radius"),
-        (lambda: fcl_artic.points([[0, 0, 0]], [0.1, 0.2]), ValueError, "1 points and 2 radii"),
+        (lambda: fcl_artic.points([[0, 0, 0]], [0.1, 0.2]), ValueError, "1 point and 2 radii"),
     ],
 )
 def test_a_shape_that_is_none_is_refused_by_name(make, error, text):

@@ -221,7 +221,7 @@ void JointMotion::goByHalfAngles(const KinematicTree& tree, const Eigen::VectorX
 void JointMotion::requirePolynomial(const char* who) const {
   if (isPolynomial()) return;
   throw std::invalid_argument(std::string(who) + ": the motion's angles go by a tangent half-angle law, not by " +
-                              "polynomials of time");
+                              "polynomials of time; motions by linear() and polynomial() are taken");
 }
 
 void JointMotion::refuse(const KinematicTree& tree, const char* what) const {

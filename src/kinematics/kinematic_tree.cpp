@@ -264,8 +264,8 @@ LinkId KinematicTree::parentLink(LinkId link) const {
   return joint < 0 ? -1 : joint_parent_[joint];
 }
 
-/// The root of the link's tree. The way there becomes half as long each time that it is gone, so that joints in any
-/// order are added in n log n steps in all.
+/// Returns the root of the link's tree. Each call makes the way up half as long, so that joints in any order are added
+/// in n log n steps in all.
 LinkId KinematicTree::rootAbove(LinkId link) {
   while (index_.above[link] != link) link = index_.above[link] = index_.above[index_.above[link]];
   return link;

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "kinematics/angles.h"
 #include "plans/variables.h"
 
 namespace fcl_artic::plans {
@@ -87,45 +88,6 @@ std::string without(const std::string& name, const std::vector<std::string>& end
   return {};
 }
 
-/// Columns of one quantity, by joint.
-struct QuantityColumns {
-  std::vector<std::string> joints;
-  std::vector<std::size_t> at;
-
-  void add(const std::string& joint, std::size_t column) {
-    joints.push_back(joint);
-    at.push_back(column);
-  }
-};
-
-/// The columns in the order of `joints`.
-Plan::Rows take(const Table& table, const QuantityColumns& columns, const std::vector<std::string>& joints,
-                const std::string& what) {
-  if (columns.at.empty()) return {};
-  std::vector<std::size_t> order;
-  for (const std::string& joint : joints) {
-    const auto found = std::find(columns.joints.begin(), columns.joints.end(), joint);
-    if (found == columns.joints.end()) {
-      throw std::invalid_argument(
-          fmt::format("line {}: joint '{}' has no column of its {}, which others have "
-                      "(--skip leaves theirs out)",
-                      table.header_line, joint, what));
-    }
-    order.push_back(columns.at[static_cast<std::size_t>(found - columns.joints.begin())]);
-  }
-  for (const std::string& joint : columns.joints) {
-    if (std::find(joints.begin(), joints.end(), joint) != joints.end()) continue;
-    throw std::invalid_argument(fmt::format("line {}: joint '{}' has a column of its {}, and none of its position",
-                                            table.header_line, joint, what));
-  }
-  Plan::Rows rows;
-  for (const std::vector<double>& row : table.rows) {
-    std::vector<double>& out = rows.emplace_back();
-    for (const std::size_t column : order) out.push_back(row[column]);
-  }
-  return rows;
-}
-
 const std::vector<std::string> kVelocityEndings{"/velocity", ".velocity", "_velocity", "_vel"},
     kAccelerationEndings{"/acceleration", ".acceleration", "_acceleration", "_acc"};
 
@@ -152,6 +114,48 @@ struct Meaning {
     return joint;
   }
 };
+
+/// Columns of one quantity, by joint.
+struct QuantityColumns {
+  std::vector<std::string> joints;  ///< in the order of the file
+  std::map<std::string, std::size_t> at;
+
+  void add(const Meaning& meaning, std::size_t column, int line) {
+    const auto [first, is_new] = at.emplace(meaning.joint, column);
+    if (!is_new) {
+      throw std::invalid_argument(
+          fmt::format("line {}: two columns are '{}', {} and {}", line, meaning.text(), first->second, column));
+    }
+    joints.push_back(meaning.joint);
+  }
+};
+
+/// The columns in the order of those of positions.
+Plan::Rows take(const Table& table, const QuantityColumns& columns, const QuantityColumns& positions,
+                const std::string& what) {
+  if (columns.at.empty()) return {};
+  std::vector<std::size_t> order;
+  for (const std::string& joint : positions.joints) {
+    const auto found = columns.at.find(joint);
+    if (found == columns.at.end()) {
+      throw std::invalid_argument(
+          fmt::format("line {}: joint '{}' has no column of its {}, which others have (--skip leaves theirs out)",
+                      table.header_line, joint, what));
+    }
+    order.push_back(found->second);
+  }
+  for (const std::string& joint : columns.joints) {
+    if (positions.at.count(joint)) continue;
+    throw std::invalid_argument(fmt::format("line {}: joint '{}' has a column of its {}, and none of its position",
+                                            table.header_line, joint, what));
+  }
+  Plan::Rows rows;
+  for (const std::vector<double>& row : table.rows) {
+    std::vector<double>& out = rows.emplace_back();
+    for (const std::size_t column : order) out.push_back(row[column]);
+  }
+  return rows;
+}
 
 std::string lowered(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -453,13 +457,13 @@ Plan parseCsv(const KinematicTree& tree, std::string_view content, const ColumnO
         times.push_back(i);
         break;
       case Quantity::position:
-        positions.add(meaning.joint, i);
+        positions.add(meaning, i, table.header_line);
         break;
       case Quantity::velocity:
-        velocities.add(meaning.joint, i);
+        velocities.add(meaning, i, table.header_line);
         break;
       case Quantity::acceleration:
-        accelerations.add(meaning.joint, i);
+        accelerations.add(meaning, i, table.header_line);
         break;
       case Quantity::none:
         break;
@@ -470,19 +474,11 @@ Plan parseCsv(const KinematicTree& tree, std::string_view content, const ColumnO
     throw std::invalid_argument(
         fmt::format("line {}: two columns of times, '{}' and '{}'", table.header_line, name(times[0]), name(times[1])));
   }
-  for (std::size_t j = 0; j < positions.joints.size(); ++j) {
-    for (std::size_t k = 0; k < j; ++k) {
-      if (positions.joints[j] == positions.joints[k]) {
-        throw std::invalid_argument(fmt::format("line {}: two columns are joint '{}', {} and {}", table.header_line,
-                                                positions.joints[j], positions.at[k], positions.at[j]));
-      }
-    }
-  }
   plan.joints = positions.joints;
   plan.joints_counted = std::any_of(meanings.begin(), meanings.end(), [](const auto& m) { return m->counted; });
-  plan.positions = take(table, positions, plan.joints, "position");
-  plan.velocities = take(table, velocities, plan.joints, "velocity");
-  plan.accelerations = take(table, accelerations, plan.joints, "acceleration");
+  plan.positions = take(table, positions, positions, "position");
+  plan.velocities = take(table, velocities, positions, "velocity");
+  plan.accelerations = take(table, accelerations, positions, "acceleration");
   if (!times.empty()) {
     // Times above this are a clock's seconds since 1970: they leave few digits for a motion.
     constexpr double kClock = 1e8;

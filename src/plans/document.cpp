@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "kinematics/angles.h"
 #include "plans/refuse.h"
 #include "plans/variables.h"
 
@@ -176,9 +177,8 @@ struct PoseJoint {
 };
 
 PoseJoint poseJoint(const KinematicTree& tree, const std::string& name, const std::string& where) {
-  for (JointId j = 0; j < tree.numJoints(); ++j) {
+  if (const JointId j = tree.findJoint(name); j >= 0) {
     const Joint& joint = tree.joint(j);
-    if (joint.name != name) continue;
     if (joint.type != JointType::planar && joint.type != JointType::floating) {
       refuse(fmt::format("{}: joint '{}' of robot '{}' is neither planar nor floating", where, name, tree.name()));
     }
@@ -218,17 +218,12 @@ std::vector<double> valuesAt(const PoseJoint& joint, const std::vector<double>& 
 }
 
 bool isMimic(const KinematicTree& tree, const std::string& name) {
-  for (JointId j = 0; j < tree.numJoints(); ++j) {
-    if (tree.joint(j).name == name) return tree.joint(j).mimics;
-  }
-  return false;
+  const JointId j = tree.findJoint(name);
+  return j >= 0 && tree.joint(j).mimics;
 }
 
 bool isJoint(const KinematicTree& tree, const std::string& name) {
-  for (JointId j = 0; j < tree.numJoints(); ++j) {
-    if (tree.joint(j).name == name) return true;
-  }
-  return false;
+  return tree.findJoint(name) >= 0;
 }
 
 /// Checks that mimic joints stand where the joints that they follow have them, here and all along the plan.
@@ -566,14 +561,15 @@ class Reader {
     for (int v = 0; v < tree_.dof(); ++v) {
       const auto known = state.find(tree_.variableName(v));
       if (known != state.end()) from[v] = to[v] = known->second;
-      for (std::size_t j = 0; known != state.end() && j < part.joints.size(); ++j) {
-        if (part.joints[j] == known->first) to[v] = part.positions.front()[j];
-      }
+    }
+    for (std::size_t j = 0; j < part.joints.size(); ++j) {
+      const int v = tree_.findVariable(part.joints[j]);
+      if (v >= 0 && state.count(part.joints[j])) to[v] = part.positions.front()[j];
     }
     for (int v = 0; v < tree_.dof(); ++v) {
       const JointId j = tree_.variableJoint(v);
       const bool forever = tree_.isAngle(v) && !hasLimits(tree_.joint(j));
-      double gap = forever ? std::remainder(to[v] - from[v], 2 * kHalfTurn) : to[v] - from[v];
+      double gap = forever ? std::remainder(to[v] - from[v], kTwoPi) : to[v] - from[v];
       if (const int q = tree_.quaternionVariable(j); q >= 0 && v >= q) {  // of two signs, which say the same
         gap = from.segment<4>(q).dot(to.segment<4>(q)) < 0 ? to[v] + from[v] : gap;
       }

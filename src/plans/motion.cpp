@@ -8,8 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "kinematics/angles.h"
 #include "plans/refuse.h"
 #include "plans/variables.h"
+#include "text/counted.h"
 
 namespace fcl_artic::plans {
 namespace {
@@ -20,14 +22,13 @@ using Eigen::VectorXd;
 // file, 1e-6 with the six digits that OMPL and ROS print, decides between two senses.
 constexpr double kNearHalfTurn = 2e-6;
 
-std::string plural(std::size_t n, const std::string& what) {
-  return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
-}
-
 /// Columns of a plan as variables of the tree.
 struct PlanColumns {
   std::vector<std::string> names;
   std::vector<int> variables;
+  std::vector<int> column;  ///< of each of the tree's variables; -1: the plan has none
+
+  bool has(int v) const { return column[static_cast<std::size_t>(v)] >= 0; }
 };
 
 PlanColumns columnsOf(const KinematicTree& tree, const Plan& plan, const MotionOptions& options) {
@@ -46,14 +47,15 @@ PlanColumns columnsOf(const KinematicTree& tree, const Plan& plan, const MotionO
     }
     if (values != out.names.size()) {
       refuse(fmt::format("waypoint 0 has {} and no names; robot '{}' has {}: {}; name those of the plan by --joints",
-                         plural(values, "value"), tree.name(), plural(out.names.size(), "joint"), variableNames(tree)));
+                         text::counted(values, "value"), tree.name(), text::counted(out.names.size(), "joint"),
+                         variableNames(tree)));
     }
   }
+  out.column.assign(static_cast<std::size_t>(tree.dof()), -1);
   for (const std::string& name : out.names) {
     const int variable = variableOf(tree, name, "the plan");
-    if (std::find(out.variables.begin(), out.variables.end(), variable) != out.variables.end()) {
-      refuse(fmt::format("the plan names joint '{}' twice", name));
-    }
+    if (out.has(variable)) refuse(fmt::format("the plan names joint '{}' twice", name));
+    out.column[static_cast<std::size_t>(variable)] = static_cast<int>(out.variables.size());
     out.variables.push_back(variable);
   }
   return out;
@@ -65,13 +67,11 @@ VectorXd restOf(const KinematicTree& tree, const Plan& plan, const MotionOptions
   VectorXd q = tree.neutralConfiguration();
   std::vector<bool> known(static_cast<std::size_t>(tree.dof()), false);
   for (const int v : columns.variables) known[static_cast<std::size_t>(v)] = true;
-  const std::vector<bool> in_plan = known;  // by its own waypoints
   for (const auto* state : {&options.state, &plan.state}) {
     for (const auto& [name, value] : *state) {
       const auto v = static_cast<std::size_t>(variableOf(tree, name, "the state of the other joints"));
-      if (in_plan[v]) {
-        const auto column = static_cast<std::size_t>(std::find(columns.variables.begin(), columns.variables.end(), v) -
-                                                     columns.variables.begin());
+      if (columns.column[v] >= 0) {
+        const auto column = static_cast<std::size_t>(columns.column[v]);
         for (std::size_t k = 0; state == &options.state && k < plan.positions.size(); ++k) {
           requireGiven(name, value, plan.positions[k].at(column), fmt::format("waypoint {}", k));
         }
@@ -96,8 +96,7 @@ VectorXd restOf(const KinematicTree& tree, const Plan& plan, const MotionOptions
   // A joint that the plan does not name may stand beyond its limits: a note says so.
   for (int v = 0; v < tree.dof(); ++v) {
     const Joint& joint = tree.joint(tree.variableJoint(v));
-    const bool named = std::find(columns.variables.begin(), columns.variables.end(), v) != columns.variables.end();
-    if (named || !hasLimits(joint) || (q[v] >= joint.lower && q[v] <= joint.upper)) continue;
+    if (columns.has(v) || !hasLimits(joint) || (q[v] >= joint.lower && q[v] <= joint.upper)) continue;
     notes.push_back(fmt::format("joint '{}' stays at {:g}, beyond its limits [{:g}, {:g}]", joint.name, q[v],
                                 joint.lower, joint.upper));
   }
@@ -105,11 +104,12 @@ VectorXd restOf(const KinematicTree& tree, const Plan& plan, const MotionOptions
 }
 
 void requireRows(const Plan::Rows& rows, const char* what, std::size_t waypoints, const PlanColumns& columns) {
-  if (rows.size() != waypoints) refuse(fmt::format("{} {} for {}", rows.size(), what, plural(waypoints, "waypoint")));
+  if (rows.size() != waypoints)
+    refuse(fmt::format("{} {} for {}", rows.size(), what, text::counted(waypoints, "waypoint")));
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (rows[k].size() != columns.names.size()) {
-      refuse(
-          fmt::format("waypoint {} has {} {} for {}", k, rows[k].size(), what, plural(columns.names.size(), "joint")));
+      refuse(fmt::format("waypoint {} has {} {} for {}", k, rows[k].size(), what,
+                         text::counted(columns.names.size(), "joint")));
     }
     for (std::size_t j = 0; j < rows[k].size(); ++j) {
       if (std::isfinite(rows[k][j])) continue;
@@ -121,7 +121,7 @@ void requireRows(const Plan::Rows& rows, const char* what, std::size_t waypoints
 
 void requireTimes(const std::vector<double>& times, std::size_t waypoints) {
   if (times.size() != waypoints)
-    refuse(fmt::format("{} for {}", plural(times.size(), "time"), plural(waypoints, "waypoint")));
+    refuse(fmt::format("{} for {}", text::counted(times.size(), "time"), text::counted(waypoints, "waypoint")));
   for (std::size_t k = 0; k < times.size(); ++k) {
     if (!std::isfinite(times[k])) refuse(fmt::format("waypoint {}: its time {} is not a finite number", k, times[k]));
     if (k > 0 && !(times[k] > times[k - 1])) {
@@ -165,8 +165,7 @@ void judgeLimits(const KinematicTree& tree, const Plan& plan, const PlanColumns&
       if (beyond == 0) continue;
       if (const std::string why = judge.refusal(v, value); !why.empty()) {
         // More than a turn is seldom an angle in rad.
-        const bool degrees =
-            angle && !options.degrees && std::abs(value) > 2 * kHalfTurn && areDegrees(tree, plan, columns);
+        const bool degrees = angle && !options.degrees && std::abs(value) > kTwoPi && areDegrees(tree, plan, columns);
         refuse(fmt::format("waypoint {}: {}; {}--ignore-limits has it certified all the same", k, why,
                            degrees ? "are these degrees? --degrees says so; " : ""));
       }
@@ -207,7 +206,7 @@ JointTrajectory::Unwrap judgeTurns(const KinematicTree& tree, const Plan& plan, 
     const bool forever = joint.type == JointType::continuous || (joint.type == JointType::planar && tree.isAngle(v));
     for (std::size_t k = 1; forever && k < plan.positions.size(); ++k) {
       const double step = plan.positions[k][j] - plan.positions[k - 1][j];
-      if (std::abs(step) < kHalfTurn) continue;
+      if (std::abs(step) < kPi) continue;
       refuse(
           fmt::format("joint '{}' turns forever and goes by {:g} rad from waypoint {} to {}: --turns given takes it "
                       "at its word, --turns shortest goes the shorter way round",
@@ -300,8 +299,7 @@ Plan inRadians(const KinematicTree& tree, const Plan& plan) {
   for (auto& [name, value] : out.state) {
     if (tree.isAngle(variableOf(tree, name, "the state of the other joints"))) value *= kRadiansPerDegree;
   }
-  if (most <= 2 * kHalfTurn)
-    out.notes.push_back(fmt::format("no angle is beyond {:.3g} deg: are these radians?", most));
+  if (most <= kTwoPi) out.notes.push_back(fmt::format("no angle is beyond {:.3g} deg: are these radians?", most));
   return out;
 }
 
@@ -322,7 +320,7 @@ std::size_t PlanMotion::waypointBefore(double t) const {
 PlanMotion toMotion(const KinematicTree& tree, const Plan& given, const MotionOptions& options) {
   if (!given.error.empty()) refuse(given.error);
   const std::size_t waypoints = given.positions.size();
-  if (waypoints < 2) refuse(fmt::format("it has {}, a plan needs two", plural(waypoints, "waypoint")));
+  if (waypoints < 2) refuse(fmt::format("it has {}, a plan needs two", text::counted(waypoints, "waypoint")));
   const PlanColumns columns = columnsOf(tree, given, options);
   Plan plan = given;
   if (options.degrees) {
@@ -330,8 +328,7 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& given, const MotionOp
     plan = inRadians(tree, plan);
     plan.joints = given.joints;
   }
-  std::vector<std::string> notes = plan.notes;
-  for (std::string& note : unitNotes(plan, options.degrees)) notes.push_back(std::move(note));
+  std::vector<std::string> notes = notesOf(plan, options.degrees);
   requireRows(plan.positions, "positions", waypoints, columns);
   const VectorXd rest = restOf(tree, plan, options, columns, notes);
   if (!plan.velocities.empty()) requireRows(plan.velocities, "velocities", waypoints, columns);
@@ -366,8 +363,7 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& given, const MotionOp
   const Waypoints through{times, q, spread(plan.velocities, columns, zero), spread(plan.accelerations, columns, zero)};
   std::map<std::string, double> others;
   for (int v = 0; v < tree.dof(); ++v) {
-    const bool named = std::find(columns.variables.begin(), columns.variables.end(), v) != columns.variables.end();
-    if (!named) others[tree.variableName(v)] = rest[v];
+    if (!columns.has(v)) others[tree.variableName(v)] = rest[v];
   }
   JointTrajectory motion = makeTrajectory(tree, kind, through, options.blend, unwrap);
   return {kind,

@@ -69,6 +69,7 @@ std::vector<Plan> parseStream(const KinematicTree& tree, std::string_view conten
 void keepUnitsOfComments(std::string_view content, std::vector<Plan>& plans) {
   constexpr std::string_view kMark = "\xEF\xBB\xBF", kBefore = " \t\r\"";
   if (content.substr(0, kMark.size()) == kMark) content.remove_prefix(kMark.size());
+  Plan found;
   for (int line = 1; !content.empty(); ++line) {
     const std::size_t end = std::min(content.find('\n'), content.size());
     const std::string_view text = content.substr(0, end);
@@ -77,7 +78,11 @@ void keepUnitsOfComments(std::string_view content, std::vector<Plan>& plans) {
     while (begin != text.npos && begin > 0 && kBefore.find(text[begin - 1]) == text.npos)
       begin = text.find('#', begin + 1);
     if (begin == text.npos) continue;
-    for (Plan& plan : plans) keepUnits(text.substr(begin), line, plan);
+    keepUnits(text.substr(begin), line, found);
+  }
+  for (Plan& plan : plans) {
+    if (plan.other_angles.empty()) plan.other_angles = found.other_angles;
+    if (plan.other_units.empty()) plan.other_units = found.other_units;
   }
 }
 
@@ -93,8 +98,8 @@ void keepUnits(std::string_view text, int line, Plan& plan) {
   if (text::speaksOfOtherLengthsOrTimes(text)) keep(plan.other_units);
 }
 
-std::vector<std::string> unitNotes(const Plan& plan, bool degrees) {
-  std::vector<std::string> notes;
+std::vector<std::string> notesOf(const Plan& plan, bool degrees) {
+  std::vector<std::string> notes = plan.notes;
   if (!degrees && !plan.other_angles.empty()) {
     notes.push_back(
         plan.other_angles +

@@ -36,7 +36,7 @@ struct Plan {
   /// "line 3 says '# angles in degrees'": the first text beside the values that speaks of angles, and of lengths or
   /// times, in other units than rad, m and s. Nobody applies these; empty: there is none.
   std::string other_angles, other_units;
-  std::vector<std::string> notes;  ///< what was accepted though unusual, one line each
+  std::vector<std::string> notes;  ///< what was accepted though unusual, one line each; notesOf() has all
   std::string error;               ///< what is wrong with this plan; empty: nothing was found
 };
 
@@ -79,8 +79,8 @@ std::vector<Plan> parsePlans(const KinematicTree& tree, std::string_view content
 
 /// Keeps what a text beside a plan's values says of other units (Plan::other_angles, other_units).
 void keepUnits(std::string_view text, int line, Plan& plan);
-/// Notes of that, one line each.
+/// All notes of a plan, one line each: its own, and of the units that its texts speak of.
 /// @param degrees  whether the caller says that the plan's angles are in degrees.
-std::vector<std::string> unitNotes(const Plan& plan, bool degrees);
+std::vector<std::string> notesOf(const Plan& plan, bool degrees);
 
 }  // namespace fcl_artic::plans

@@ -18,19 +18,13 @@ std::string variableNames(const KinematicTree& tree) {
 }
 
 bool isVariable(const KinematicTree& tree, const std::string& name) {
-  for (int v = 0; v < tree.dof(); ++v) {
-    if (tree.variableName(v) == name) return true;
-  }
-  return false;
+  return tree.findVariable(name) >= 0;
 }
 
 int variableOf(const KinematicTree& tree, const std::string& name, const std::string& what) {
-  for (int v = 0; v < tree.dof(); ++v) {
-    if (tree.variableName(v) == name) return v;
-  }
-  for (JointId j = 0; j < tree.numJoints(); ++j) {
+  if (const int v = tree.findVariable(name); v >= 0) return v;
+  if (const JointId j = tree.findJoint(name); j >= 0) {
     const Joint& joint = tree.joint(j);
-    if (joint.name != name) continue;
     if (tree.numVariables(j) > 1) {
       throw std::invalid_argument(fmt::format("{}: joint '{}' has {} values, from '{}' on", what, name,
                                               tree.numVariables(j), tree.variableName(tree.jointVariable(j))));

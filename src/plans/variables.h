@@ -8,8 +8,6 @@
 
 namespace fcl_artic::plans {
 
-constexpr double kHalfTurn = 3.14159265358979323846;
-constexpr double kRadiansPerDegree = kHalfTurn / 180;
 /// Rad or m. Values of a joint that differ by no more say the same: they have been printed and read in between.
 constexpr double kSameValue = 1e-6;
 

@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "kinematics/angles.h"
 #include "numerics/shown.h"
 #include "query/engine_query.h"
 #include "query/manager_impl.h"
@@ -50,7 +51,6 @@ struct Pair {
 /// The range of a variable to try: its limits, or a whole turn for an angle without any. A slide without limits stays
 /// at 0.
 ValueRange rangeToTry(const KinematicTree& tree, int variable) {
-  constexpr double kPi = 3.141592653589793;
   const Joint& joint = tree.joint(tree.variableJoint(variable));
   if (hasLimits(joint) && std::isfinite(joint.upper - joint.lower)) return {joint.lower, joint.upper};
   return tree.isAngle(variable) ? ValueRange{-kPi, kPi} : ValueRange{0, 0};

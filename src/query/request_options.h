@@ -14,16 +14,16 @@ struct NamedValue {
   E value;
   const char* name;
 };
-constexpr NamedValue<ContactMode> kContactModes[] = {
+inline constexpr NamedValue<ContactMode> kContactModes[] = {
     {ContactMode::first, "first"}, {ContactMode::any, "any"}, {ContactMode::firstOfEveryPair, "first_of_every_pair"}};
-constexpr NamedValue<Method> kMethods[] = {{Method::standard, "standard"}, {Method::redon2004, "redon2004"}};
-constexpr NamedValue<VisibilityMode> kVisibilityModes[] = {{VisibilityMode::off, "off"},
-                                                           {VisibilityMode::on, "on"},
-                                                           {VisibilityMode::automatic, "automatic"},
-                                                           {VisibilityMode::atOnce, "at_once"}};
-constexpr NamedValue<MotionEnclosure> kMotionEnclosures[] = {{MotionEnclosure::intervalChain, "interval_chain"},
-                                                             {MotionEnclosure::meanValue, "mean_value"},
-                                                             {MotionEnclosure::taylor, "taylor"}};
+inline constexpr NamedValue<Method> kMethods[] = {{Method::standard, "standard"}, {Method::redon2004, "redon2004"}};
+inline constexpr NamedValue<VisibilityMode> kVisibilityModes[] = {{VisibilityMode::off, "off"},
+                                                                  {VisibilityMode::on, "on"},
+                                                                  {VisibilityMode::automatic, "automatic"},
+                                                                  {VisibilityMode::atOnce, "at_once"}};
+inline constexpr NamedValue<MotionEnclosure> kMotionEnclosures[] = {{MotionEnclosure::intervalChain, "interval_chain"},
+                                                                    {MotionEnclosure::meanValue, "mean_value"},
+                                                                    {MotionEnclosure::taylor, "taylor"}};
 // All names of an enumeration, found by the type of the argument.
 constexpr const auto& namesOf(ContactMode) {
   return kContactModes;

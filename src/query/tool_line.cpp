@@ -56,6 +56,7 @@
 #include <string>
 #include <vector>
 
+#include "kinematics/angles.h"
 #include "motion/link_motion.h"
 #include "numerics/arc_tangent.h"
 #include "numerics/constants.h"
@@ -68,7 +69,7 @@ using Eigen::Isometry3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kPi = 3.1415926535897932, kPiUpper = 3.1415926535897936;
+constexpr double kPiUpper = 3.1415926535897936;
 constexpr double kToolDefect = 1e-9;    ///< as of other poses that callers give
 constexpr double kShortest = 1e-6;      ///< of a path, and of a triangle of an arc's points, m
 constexpr double kFlattestArc = 1e3;    ///< radius over the longest side of that triangle

@@ -231,7 +231,7 @@ void PendingQuery::findPairs() {
 }
 
 /// First contact in [begin, end] of the leaf pairs at hand. All equations are solved at once, but for at most
-/// kMostLeaves pairs, so memory is bounded.
+/// kMaxLeaves pairs, so memory is bounded.
 SearchOutcome PendingQuery::solveLeaves(const std::vector<BodyPair>& pairs, double begin, double end, double limit) {
   SearchOutcome all;
   all.free_until = end;

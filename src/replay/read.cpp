@@ -199,7 +199,7 @@ RecordedQuery readQuery(std::string_view text) {
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(std::string("query: ") + error.what());
     }
-    // Of another format nothing else is sure.
+    // Another format may have other fields.
     if (!json.is_object() || !json.contains(kFormatField))
       refuse("", std::string("is no query: it lacks '") + kFormatField + "'");
     replay::read(json[kFormatField], kFormatField, record.format);

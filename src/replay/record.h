@@ -19,7 +19,7 @@
 
 namespace fcl_artic {
 
-constexpr NamedValue<JointType> kJointTypes[] = {
+inline constexpr NamedValue<JointType> kJointTypes[] = {
     {JointType::fixed, "fixed"},         {JointType::revolute, "revolute"}, {JointType::continuous, "continuous"},
     {JointType::prismatic, "prismatic"}, {JointType::planar, "planar"},     {JointType::spherical, "spherical"},
     {JointType::floating, "floating"}};
@@ -27,10 +27,10 @@ constexpr const auto& namesOf(JointType) {
   return kJointTypes;
 }
 /// (No text holds a BoundedMotion.)
-constexpr NamedValue<MotionElement::Kind> kMotionElements[] = {{MotionElement::Kind::revolute, "revolute"},
-                                                               {MotionElement::Kind::prismatic, "prismatic"},
-                                                               {MotionElement::Kind::slide, "slide"},
-                                                               {MotionElement::Kind::turn, "turn"}};
+inline constexpr NamedValue<MotionElement::Kind> kMotionElements[] = {{MotionElement::Kind::revolute, "revolute"},
+                                                                      {MotionElement::Kind::prismatic, "prismatic"},
+                                                                      {MotionElement::Kind::slide, "slide"},
+                                                                      {MotionElement::Kind::turn, "turn"}};
 constexpr const auto& namesOf(MotionElement::Kind) {
   return kMotionElements;
 }
@@ -52,19 +52,19 @@ enum class Shape {
   points,
   octree
 };
-constexpr NamedValue<Shape> kShapes[] = {{Shape::box, "box"},
-                                         {Shape::sphere, "sphere"},
-                                         {Shape::ellipsoid, "ellipsoid"},
-                                         {Shape::capsule, "capsule"},
-                                         {Shape::cylinder, "cylinder"},
-                                         {Shape::cone, "cone"},
-                                         {Shape::halfspace, "halfspace"},
-                                         {Shape::plane, "plane"},
-                                         {Shape::triangle, "triangle"},
-                                         {Shape::convex, "convex"},
-                                         {Shape::mesh, "mesh"},
-                                         {Shape::points, "points"},
-                                         {Shape::octree, "octree"}};
+inline constexpr NamedValue<Shape> kShapes[] = {{Shape::box, "box"},
+                                                {Shape::sphere, "sphere"},
+                                                {Shape::ellipsoid, "ellipsoid"},
+                                                {Shape::capsule, "capsule"},
+                                                {Shape::cylinder, "cylinder"},
+                                                {Shape::cone, "cone"},
+                                                {Shape::halfspace, "halfspace"},
+                                                {Shape::plane, "plane"},
+                                                {Shape::triangle, "triangle"},
+                                                {Shape::convex, "convex"},
+                                                {Shape::mesh, "mesh"},
+                                                {Shape::points, "points"},
+                                                {Shape::octree, "octree"}};
 constexpr const auto& namesOf(Shape) {
   return kShapes;
 }

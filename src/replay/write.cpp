@@ -57,8 +57,9 @@ class Recorder {
     return body.isObstacle() ? "obstacle '" + body.name + "'" : "geometry of link '" + body.name + "'";
   }
 
-  /// Numbers that were made orthonormal, or of length 1, are mostly taken as they are when they are given again; 1 of
-  /// 60,000 rotations is rounded once more (Rotation::within12Ulps()), and then answers may have other bits.
+  /// A rotation that was made orthonormal, and an axis that was given the length 1, are mostly taken as they are when
+  /// they are given again. One of 60,000 rotations is rounded once more (Rotation::within12Ulps()), and answers may
+  /// differ then.
   static void requireExact(bool exact, const std::string& what) {
     if (exact) return;
     throw std::invalid_argument("writeQuery: the rotation or axis of " + what +
@@ -78,7 +79,7 @@ class Recorder {
 
   /// The number of a body's geometry, which several bodies may have.
   std::size_t numberOf(const ManagedBody& body) {
-    // Of a motion nobody knows whether it is as read.
+    // (Nobody knows whether a motion is as read.)
     const bool same = body.moving
                           ? body.moving->collisionGeometry() == body.geometry && body.content->sameAs(*body.geometry)
                           : body.isAsRead();
@@ -119,7 +120,7 @@ class Recorder {
     record_.moving.push_back(std::move(moving));
   }
 
-  /// Those of neighbours that setup() has found are found again.
+  /// Leaves out the margins of neighbours, which a reader's setup() finds again.
   void addMargins() {
     const NamedMargins all = registry_.margins(), found = registry_.marginsOfNeighbours();
     std::set<std::string> names(record_.robot.links.begin(), record_.robot.links.end());

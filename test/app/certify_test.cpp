@@ -183,6 +183,26 @@ TEST_F(CertifyProgramTest, ManyPlansAreATableAndTheWorstCounts) {
   EXPECT_EQ(answers[0], answers[1]);
 }
 
+// A comment about units helps most if the plan is wrong.
+TEST_F(CertifyProgramTest, APlanThatIsWrongKeepsItsNotes) {
+  const Outcome text = certifyFile("wrong.csv", "# lengths in mm\nhinge,rail\n0,0\n0,9\n");
+  EXPECT_EQ(text.status, 2);
+  EXPECT_NE(text.out.find("error: waypoint 1: joint 'rail' at 9"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("note: line 1 says '# lengths in mm': lengths are taken in m"), std::string::npos)
+      << text.out;
+  const Json plan = Json::parse(certify(path("wrong.csv"), "--json").out).at("plans").at(0);
+  EXPECT_EQ(plan.at("status"), "error");
+  EXPECT_EQ(plan.at("notes").size(), 1u) << plan;
+}
+
+// No tool is followed along tangents of half angles, and the cure is named.
+TEST_F(CertifyProgramTest, ALineIsOfCurvesThatAControllerRuns) {
+  const Outcome refused =
+      certifyFile("line.csv", "hinge,rail\n0,0\n0.1,0\n", "--line tip=1mm --interpolation tangent-half-angle");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("--interpolation linear, cubic, quintic or jtc"), std::string::npos) << refused.err;
+}
+
 TEST_F(CertifyProgramTest, FilesFoldersAndStandardInput) {
   write("folder/b.csv", "hinge,rail\n0,0\n0.5,0\n");
   write("folder/a.jsonl", R"({"waypoints": [[0, 0], [0.5, 0]]})");

@@ -427,7 +427,7 @@ TEST_F(ProgramTest, ErrorsAreJsonToo) {
 }
 
 TEST_F(ProgramTest, HelpOfEveryVerbSaysItsExitStatuses) {
-  for (const char* verb : {"check", "certify", "srdf", "info", "compare", "generate", "bench robot"}) {
+  for (const char* verb : {"check", "certify", "srdf", "info", "generate", "bench robot"}) {
     const Outcome help = run(std::string(verb) + " --help");
     EXPECT_EQ(help.status, 0);
     expectContains(help.out, "Exit status: ");

@@ -69,6 +69,14 @@ TEST_F(ReplayTest, ReadsAloudWhatItReplays) {
   EXPECT_NE(older.out.find("written by fcl_artic 0.9.0"), std::string::npos) << older.out;
 }
 
+TEST_F(ReplayTest, WithoutADumpTheAnswerIsPrintedAllTheSame) {
+  const Outcome unwritten =
+      run("check " + armAndBall() + " --from 0,0 --to 1.5,0 --dump " + path("nowhere") + "/q.json");
+  EXPECT_EQ(unwritten.status, 2);
+  EXPECT_EQ(unwritten.out.rfind("CONTACT", 0), 0u) << unwritten.out;
+  EXPECT_NE(unwritten.err.find("nowhere/q.json"), std::string::npos) << unwritten.err;
+}
+
 TEST_F(ReplayTest, WhatIsNoQueryIsRefusedWithItsFile) {
   for (const std::string content : {"", "{}", "[1]", "{\"fcl_artic_query\": 1}"}) {
     const std::string file = write("bad.json", content);

@@ -53,7 +53,7 @@ TEST_F(VisibilityProgram, AtOnceSolvesOnce) {
 
 TEST_F(VisibilityProgram, TextHasALine) {
   const Outcome run = this->run("check --visibility on " + armAndBall() + " --from 0,0 --to 90deg,0");
-  EXPECT_NE(run.out.find("stage 2   executor cpu: 1 pairs seen"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("stage 2   executor cpu: 1 pair seen"), std::string::npos) << run.out;
   EXPECT_EQ(this->run("check " + armAndBall() + " --from 0,0 --to 90deg,0").out.find("stage 2"), std::string::npos);
 }
 

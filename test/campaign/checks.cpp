@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -29,14 +28,14 @@ class Examination {
   std::vector<Finding> run() {
     bracket(result_.t_lower, result_.t_upper);
     poses();
-    if (result_.status == Status::undecided) add(Fault::undecided, "undecided at t_lower %.17g", result_.t_lower);
+    if (result_.status == Status::undecided) add("undecided", "undecided at t_lower %.17g", result_.t_lower);
     if (result_.status == Status::free) {
-      if (truth_.hit) add(Fault::missed, "free, but contact at t = %.17g", truth_.time);
+      if (truth_.hit) add("missed", "free, but contact at t = %.17g", truth_.time);
       if (!result_.contacts.empty() || result_.certain || result_.t_lower != 1)
-        add(Fault::fields, "free with contacts, certain, or t_lower %.17g", result_.t_lower);
+        add("fields", "free with contacts, certain, or t_lower %.17g", result_.t_lower);
     }
     if (truth_.hit && result_.status != Status::free && result_.t_lower > truth_.time)
-      add(Fault::late, "t_lower %.17g, contact at t = %.17g (%.3g before)", result_.t_lower, truth_.time,
+      add("late", "t_lower %.17g, contact at t = %.17g (%.3g before)", result_.t_lower, truth_.time,
           result_.t_lower - truth_.time);
     if (result_.status == Status::contact) contacts();
     return std::move(findings_);
@@ -44,7 +43,7 @@ class Examination {
 
  private:
   template <typename... T>
-  void add(Fault fault, const char* format, T... values) {
+  void add(const char* fault, const char* format, T... values) {
     char line[256];
     std::snprintf(line, sizeof line, format, values...);
     findings_.push_back({fault, line});
@@ -54,13 +53,13 @@ class Examination {
   Pose poseAt(int body, double t) const { return oracle_.kinematics().bodyPose(body, t); }
 
   void bracket(double lower, double upper) {
-    if (!(0 <= lower && lower <= upper && upper <= 1)) add(Fault::fields, "bracket [%.17g, %.17g]", lower, upper);
+    if (!(0 <= lower && lower <= upper && upper <= 1)) add("fields", "bracket [%.17g, %.17g]", lower, upper);
   }
 
   void poses() {
     const std::size_t expected = result_.isFree() ? 0 : scene_.links.size();
     if (result_.M_0_at_lower.size() != expected) {
-      add(Fault::poses, "%zu poses instead of %zu", result_.M_0_at_lower.size(), expected);
+      add("poses", "%zu poses instead of %zu", result_.M_0_at_lower.size(), expected);
       return;
     }
     for (std::size_t i = 0; i < expected; ++i) {
@@ -68,7 +67,7 @@ class Examination {
       const Eigen::Isometry3d& M = result_.M_0_at_lower[i];
       const double off =
           std::max((M.linear() - own.R).cwiseAbs().maxCoeff(), (M.translation() - own.p).cwiseAbs().maxCoeff());
-      if (!(off <= 1e-12)) add(Fault::poses, "link%zu off by %.3g at t_lower", i, off);
+      if (!(off <= 1e-12)) add("poses", "link%zu off by %.3g at t_lower", i, off);
     }
   }
 
@@ -82,7 +81,7 @@ class Examination {
   void contacts() {
     const std::size_t most = scene_.every_pair ? 10000 : static_cast<std::size_t>(scene_.max_contacts);
     if (result_.contacts.empty() || result_.contacts.size() > most) {
-      add(Fault::fields, "%zu contacts", result_.contacts.size());
+      add("fields", "%zu contacts", result_.contacts.size());
       return;
     }
     double first_lower = 1;
@@ -92,23 +91,22 @@ class Examination {
       const int a = answer_.bodyOf(c.body1.object), b = answer_.bodyOf(c.body2.object);
       if (a < 0 || b < 0 ||
           std::find(checked.begin(), checked.end(), std::pair<int, int>(std::minmax(a, b))) == checked.end()) {
-        add(Fault::fields, "contact of bodies %d and %d, which are no checked pair", a, b);
+        add("fields", "contact of bodies %d and %d, which are no checked pair", a, b);
         continue;
       }
       if (c.body1.name != scene_.nameOf(a) || c.body2.name != scene_.nameOf(b) ||
           c.body1.link != scene_.bodies[static_cast<std::size_t>(a)].link ||
           c.body2.link != scene_.bodies[static_cast<std::size_t>(b)].link || c.o1 != geometry(a).fclGeometry().get() ||
           c.o2 != geometry(b).fclGeometry().get())
-        add(Fault::fields, "contact of bodies %d and %d: link, name or geometry is another's", a, b);
+        add("fields", "contact of bodies %d and %d: link, name or geometry is another's", a, b);
       bracket(c.t_lower, c.t_upper);
       first_lower = std::min(first_lower, c.t_lower);
       touches = touches || touchesWithin(a, b, result_.t_lower, result_.t_upper);
       contact(c, a, b);
     }
     if (first_lower < result_.t_lower)
-      add(Fault::fields, "t_lower %.17g, that of its contacts %.17g", result_.t_lower, first_lower);
-    if (result_.certain && !touches)
-      add(Fault::unproven, "no contact in [%.17g, %.17g]", result_.t_lower, result_.t_upper);
+      add("fields", "t_lower %.17g, that of its contacts %.17g", result_.t_lower, first_lower);
+    if (result_.certain && !touches) add("unproven", "no contact in [%.17g, %.17g]", result_.t_lower, result_.t_upper);
     if (scene_.every_pair) everyPair();
   }
 
@@ -123,15 +121,15 @@ class Examination {
     const PairTruth inside = oracle_.firstContact(std::min(a, b), std::max(a, b), end, c.t_lower);
     const bool touches = inside.hit || inside.doubtful || inside.gap <= kContact;
     if (!touches && inside.gap > scene_.tolerance_distance)
-      add(Fault::false_contact, "gap %.6g m throughout [%.17g, %.17g]", inside.gap, c.t_lower, end);
+      add("false", "gap %.6g m throughout [%.17g, %.17g]", inside.gap, c.t_lower, end);
     else if (!touches && c.certain)
-      add(Fault::unproven, "gap %.6g m throughout [%.17g, %.17g]", inside.gap, c.t_lower, end);
+      add("unproven", "gap %.6g m throughout [%.17g, %.17g]", inside.gap, c.t_lower, end);
 
     const double way = displacement(a, b, c.t_lower, end), width = c.t_upper - c.t_lower;
     // 1e-15: t_upper is rounded
     if (c.certain && width > scene_.tolerance_time + 1e-15 && way > scene_.tolerance_distance) {
       const Proximity p = oracle_.at(a, b, c.t_lower, 1e-3);
-      if (p.gap > kContact) add(Fault::wide, "width %.3g, way %.3g m, gap at t_lower %.3g m", width, way, p.gap);
+      if (p.gap > kContact) add("wide", "width %.3g, way %.3g m, gap at t_lower %.3g m", width, way, p.gap);
     }
 
     const double time = c.certain ? c.t_upper : c.t_lower;
@@ -139,28 +137,28 @@ class Examination {
     const double near = 1e-5 + way + scene_.margin + (c.certain ? 0 : scene_.tolerance_distance);
     const double from_a = distanceTo(geometry(a), M_a, c.point), from_b = distanceTo(geometry(b), M_b, c.point);
     if (!(from_a <= near && from_b <= near))
-      add(Fault::point, "point %.3g m and %.3g m from its bodies, allowed %.3g", from_a, from_b, near);
+      add("point", "point %.3g m and %.3g m from its bodies, allowed %.3g", from_a, from_b, near);
 
     const auto validId = [&](int body, std::intptr_t id) {
       return geometry(body).isMesh() ? id >= 0 && id < geometry(body).numPieces() : id == -1;
     };
     if (!validId(a, c.b1) || !validId(b, c.b2)) {
-      add(Fault::fields, "ids %ld and %ld of bodies %d and %d", static_cast<long>(c.b1), static_cast<long>(c.b2), a, b);
+      add("fields", "ids %ld and %ld of bodies %d and %d", static_cast<long>(c.b1), static_cast<long>(c.b2), a, b);
       return;
     }
     const int i = std::max(0, static_cast<int>(c.b1)), j = std::max(0, static_cast<int>(c.b2));
     const double id_a = distanceTo(geometry(a), i, M_a, c.point), id_b = distanceTo(geometry(b), j, M_b, c.point);
     if (!(id_a <= near && id_b <= near))
-      add(Fault::point, "point %.3g m and %.3g m from its triangles, allowed %.3g", id_a, id_b, near);
+      add("point", "point %.3g m and %.3g m from its triangles, allowed %.3g", id_a, id_b, near);
 
-    if (!(std::abs(c.normal.norm() - 1) <= 1e-9)) add(Fault::normal, "normal of length %.17g", c.normal.norm());
+    if (!(std::abs(c.normal.norm() - 1) <= 1e-9)) add("normal", "normal of length %.17g", c.normal.norm());
     if (c.t_lower > 0) {
       // At t_lower the two pieces are not yet in each other, and the normal parts them, up to some 1e-3 rad of it.
       const double apart =
           gapAlong(geometry(a).piece(i, poseAt(a, c.t_lower)), geometry(b).piece(j, poseAt(b, c.t_lower)), c.normal);
       const double allowed = 1e-4 + 2 * way + scene_.tolerance_distance;
       if (!(apart >= -allowed))
-        add(Fault::normal, "pieces overlap by %.3g m along the normal, allowed %.3g", -apart, allowed);
+        add("normal", "pieces overlap by %.3g m along the normal, allowed %.3g", -apart, allowed);
     }
   }
 
@@ -170,17 +168,17 @@ class Examination {
     std::map<Names, double> lower;
     for (const CertifiedContact& c : result_.contacts) {
       if (!lower.emplace(Names(std::minmax(c.body1.name, c.body2.name)), c.t_lower).second)
-        add(Fault::fields, "two contacts of %s and %s", c.body1.name.c_str(), c.body2.name.c_str());
+        add("fields", "two contacts of %s and %s", c.body1.name.c_str(), c.body2.name.c_str());
     }
     for (const PairTruth& p : truth_.pairs) {
       if (!p.hit) continue;
       const std::string a = scene_.nameOf(p.a), b = scene_.nameOf(p.b);
       const auto found = lower.find(Names(std::minmax(a, b)));
       if (found == lower.end())
-        add(Fault::missed, "pair %d %d not reported, contact at t = %.17g", p.a, p.b, p.time);
+        add("missed", "pair %d %d not reported, contact at t = %.17g", p.a, p.b, p.time);
       else if (found->second > p.time)
-        add(Fault::late, "pair %d %d: t_lower %.17g, contact at t = %.17g (%.3g before)", p.a, p.b, found->second,
-            p.time, found->second - p.time);
+        add("late", "pair %d %d: t_lower %.17g, contact at t = %.17g (%.3g before)", p.a, p.b, found->second, p.time,
+            found->second - p.time);
     }
   }
 
@@ -232,82 +230,97 @@ void inventContact(const Oracle& oracle, const Scene& scene, Answer& answer) {
   }
 }
 
-constexpr const char* kFaultNames[] = {"missed",    "late",   "false", "unproven", "wide",
-                                       "undecided", "fields", "point", "normal",   "poses"};
-constexpr const char* kCorruptionNames[] = {"none",  "late",   "drop",  "invent",  "widen",
-                                            "point", "normal", "poses", "certain", "pair"};
+/// Draws of its own for each scene: the first one spares all answers but 1 %.
+struct Spoiler {
+  explicit Spoiler(const Scene& scene) : random(scene.seed ^ 0xbad), one_percent(random.chance(0.01)) {}
+  Random random;
+  bool one_percent;
+};
+
+bool hits(const Answer& answer) {
+  return answer.result.status == Status::contact && !answer.result.contacts.empty();
+}
+
+bool late(const Scene&, Answer& answer) {
+  CertifiedResult& r = answer.result;
+  constexpr double kBy = 1e-5;
+  if (!hits(answer)) return false;
+  r.t_lower = std::min(1.0, r.t_lower + kBy), r.t_upper = std::max(r.t_lower, r.t_upper);
+  for (CertifiedContact& c : r.contacts)
+    c.t_lower = std::min(1.0, c.t_lower + kBy), c.t_upper = std::max(c.t_lower, c.t_upper);
+  return true;
+}
+
+bool drop(const Scene& scene, Answer& answer) {
+  if (!hits(answer) || !Spoiler(scene).one_percent) return false;
+  makeFree(answer);
+  return true;
+}
+
+bool invent(const Scene& scene, Answer& answer) {
+  const Oracle oracle(scene);
+  if (answer.result.status != Status::free || !Spoiler(scene).one_percent || oracle.kinematics().pairs().empty())
+    return false;
+  inventContact(oracle, scene, answer);
+  return true;
+}
+
+bool widen(const Scene&, Answer& answer) {
+  CertifiedResult& r = answer.result;
+  if (!hits(answer)) return false;
+  r.t_lower = std::max(0.0, r.t_lower - 1e-2);
+  for (CertifiedContact& c : r.contacts) c.t_lower = std::max(0.0, c.t_lower - 1e-2);
+  return r.t_lower > 0;
+}
+
+bool movePoint(const Scene& scene, Answer& answer) {
+  if (hits(answer)) answer.result.contacts[0].point += 1e-3 * Spoiler(scene).random.direction();
+  return hits(answer);
+}
+
+bool turnNormal(const Scene&, Answer& answer) {
+  if (hits(answer)) answer.result.contacts[0].normal *= -1;
+  return hits(answer);
+}
+
+bool movePose(const Scene&, Answer& answer) {
+  auto& poses = answer.result.M_0_at_lower;
+  if (!poses.empty()) poses.back().translation().x() += 1e-11;
+  return !poses.empty();
+}
+
+/// The bracket ends before the contact, and claims to be proven.
+bool claimCertain(const Scene&, Answer& answer) {
+  CertifiedResult& r = answer.result;
+  if (!hits(answer) || !(r.t_lower > 1e-3)) return false;
+  for (CertifiedContact& c : r.contacts) c.certain = true, c.t_upper = c.t_lower -= 1e-3;
+  r.certain = true, r.t_upper = r.t_lower -= 1e-3;
+  return true;
+}
+
+bool namePairOfOneBody(const Scene&, Answer& answer) {
+  if (hits(answer)) answer.result.contacts[0].body1 = answer.result.contacts[0].body2;
+  return hits(answer);
+}
 
 }  // namespace
-
-const char* faultName(Fault fault) {
-  return kFaultNames[static_cast<int>(fault)];
-}
-const char* corruptionName(Corruption corruption) {
-  return kCorruptionNames[static_cast<int>(corruption)];
-}
-
-Corruption corruptionOf(const std::string& name) {
-  for (int i = 0; i < kCorruptions; ++i)
-    if (name == kCorruptionNames[i]) return static_cast<Corruption>(i);
-  throw std::invalid_argument("no corruption is named '" + name + "'");
-}
 
 std::vector<Finding> examine(const Scene& scene, const Oracle& oracle, const Truth& truth, const Answer& answer) {
   return Examination(scene, oracle, truth, answer).run();
 }
 
-bool corrupt(Corruption corruption, std::uint64_t seed, const Scene& scene, Answer& answer) {
-  CertifiedResult& r = answer.result;
-  Random random(seed ^ 0xbad);
-  const bool one_percent = random.chance(0.01);
-  const bool hit = r.status == Status::contact && !r.contacts.empty();
-  const auto shift = [&](double by) {
-    r.t_lower = std::min(1.0, r.t_lower + by), r.t_upper = std::max(r.t_lower, r.t_upper);
-    for (CertifiedContact& c : r.contacts)
-      c.t_lower = std::min(1.0, c.t_lower + by), c.t_upper = std::max(c.t_lower, c.t_upper);
-  };
-  switch (corruption) {
-    case Corruption::none:
-    case Corruption::count:
-      return false;
-    case Corruption::late:
-      if (hit) shift(1e-5);
-      return hit;
-    case Corruption::drop:
-      if (hit && one_percent) makeFree(answer);
-      return hit && one_percent;
-    case Corruption::invent: {
-      const Oracle oracle(scene);
-      if (r.status != Status::free || !one_percent || oracle.kinematics().pairs().empty()) return false;
-      inventContact(oracle, scene, answer);
-      return true;
-    }
-    case Corruption::widen:
-      if (hit) r.t_lower = std::max(0.0, r.t_lower - 1e-2);
-      if (hit)
-        for (CertifiedContact& c : r.contacts) c.t_lower = std::max(0.0, c.t_lower - 1e-2);
-      return hit && r.t_lower > 0;
-    case Corruption::point:
-      if (hit) r.contacts[0].point += 1e-3 * random.direction();
-      return hit;
-    case Corruption::normal:
-      if (hit) r.contacts[0].normal *= -1;
-      return hit;
-    case Corruption::poses:
-      if (!r.M_0_at_lower.empty()) r.M_0_at_lower.back().translation().x() += 1e-11;
-      return !r.M_0_at_lower.empty();
-    case Corruption::certain: {
-      // The bracket ends before the contact, and claims to be proven.
-      if (!hit || !(r.t_lower > 1e-3)) return false;
-      for (CertifiedContact& c : r.contacts) c.certain = true, c.t_upper = c.t_lower -= 1e-3;
-      r.certain = true, r.t_upper = r.t_lower -= 1e-3;
-      return true;
-    }
-    case Corruption::pair:
-      if (hit) r.contacts[0].body1 = r.contacts[0].body2;
-      return hit;
-  }
-  return false;
+const std::vector<Mutant<Scene, Answer>>& mutants() {
+  // A moved point can stay inside a solid, and a contact at t = 0 has no direction that parts the bodies.
+  static const std::vector<Mutant<Scene, Answer>> all = {{"late", 0.99, late},
+                                                         {"drop", 0.99, drop},
+                                                         {"invent", 0.99, invent},
+                                                         {"widen", 0.99, widen},
+                                                         {"point", 0.75, movePoint},
+                                                         {"normal", 0.75, turnNormal},
+                                                         {"poses", 0.99, movePose},
+                                                         {"certain", 0.99, claimCertain},
+                                                         {"pair", 0.99, namePairOfOneBody}};
+  return all;
 }
 
 }  // namespace campaign

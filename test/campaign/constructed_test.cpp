@@ -6,6 +6,7 @@
 #include "checks.h"
 #include "constructed.h"
 #include "random.h"
+#include "scene_file.h"
 
 namespace campaign {
 namespace constructed_test {
@@ -30,7 +31,7 @@ TEST_P(ConstructedContact, IsBracketedAtItsPointAndNormal) {
   for (std::uint64_t i = 0; i < kCasesEach; ++i) {
     Constructed c = constructContact(contact, chain, Random::mix(4, i));
     if (i % 2) c.scene.tolerance_time = 1e-9;
-    SCOPED_TRACE(describe(c.scene));
+    SCOPED_TRACE(toText({c.scene}));
     const Oracle oracle(c.scene);
     const Answer answer = ask(c.scene);
     const CertifiedResult& r = answer.result;
@@ -62,8 +63,7 @@ TEST_P(ConstructedContact, IsBracketedAtItsPointAndNormal) {
     truth.hit = truth.pairs[0].hit;
     truth.time = truth.pairs[0].time;
     EXPECT_GE(truth.time, c.time - kFloor) << "the construction, or the oracle, is wrong";
-    for (const Finding& f : examine(c.scene, oracle, truth, answer))
-      ADD_FAILURE() << faultName(f.fault) << ": " << f.text;
+    for (const Finding& f : examine(c.scene, oracle, truth, answer)) ADD_FAILURE() << f.fault << ": " << f.text;
   }
   EXPECT_GE(certain, kCasesEach / 2);
   RecordProperty("certain", certain);

@@ -71,7 +71,7 @@ Question prepare(const Scene& scene) {
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Body& b = scene.bodies[i];
     const Eigen::Isometry3d X = isometry(b.pose);
-    question.objects.push_back(std::make_unique<fcl::CollisionObjectd>(b.geometry->fclGeometry(),
+    question.objects.push_back(std::make_shared<fcl::CollisionObjectd>(b.geometry->fclGeometry(),
                                                                        b.link < 0 ? X : Eigen::Isometry3d::Identity()));
     if (b.link < 0)
       manager.registerObject(question.objects.back().get(), scene.nameOf(static_cast<int>(i)));
@@ -82,6 +82,7 @@ Question prepare(const Scene& scene) {
   for (const auto& [a, b] : scene.allowed) allowed.allow(scene.nameOf(a), scene.nameOf(b));
   manager.setAllowedCollisions(allowed);
   fcl_artic::test::setUpWithoutNeighbours(manager);
+  question.motion = motionOf(scene, *question.tree);
 
   fcl_artic::CertifiedRequest& request = question.request;
   request.tolerance_time = scene.tolerance_time;
@@ -94,20 +95,19 @@ Question prepare(const Scene& scene) {
   return question;
 }
 
-Answer ask(const Scene& scene, const fcl_artic::CertifiedRequest& how,
-           const std::shared_ptr<const fcl_artic::VisibilityCuller>& culler) {
-  Question question = prepare(scene);
-  question.request.method = how.method;
-  question.request.redon = how.redon;
-  question.request.visibility = how.visibility;
-  question.manager->setVisibility(culler);
-  const fcl_artic::JointMotion motion = motionOf(scene, *question.tree);
+Answer ask(const Question& question, const fcl_artic::CertifiedRequest& request) {
   Answer answer;
+  answer.request = request;
+  answer.objects = question.objects;
   const auto start = std::chrono::steady_clock::now();
-  question.manager->continuousCollide(motion, question.request, answer.result);
+  question.manager->continuousCollide(*question.motion, request, answer.result);
   answer.elapsed_us = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
-  answer.objects = std::move(question.objects);
   return answer;
+}
+
+Answer ask(const Scene& scene) {
+  const Question question = prepare(scene);
+  return ask(question, question.request);
 }
 
 }  // namespace campaign

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace campaign {
 
@@ -140,59 +139,6 @@ std::vector<std::pair<int, int>> Kinematics::pairs() const {
       r.emplace_back(i, j);
     }
   return r;
-}
-
-std::string describe(const Scene& s) {
-  std::string out;
-  char line[512];
-  const auto pose = [&](const Pose& M) {
-    std::string r = " R";
-    char x[32];
-    for (int i = 0; i < 9; ++i) std::snprintf(x, sizeof x, " %.17g", M.R(i / 3, i % 3)), r += x;
-    r += " p";
-    for (int i = 0; i < 3; ++i) std::snprintf(x, sizeof x, " %.17g", M.p[i]), r += x;
-    return r;
-  };
-  static const char* kinds[] = {"fixed", "revolute", "continuous", "prismatic"};
-  std::snprintf(line, sizeof line, "scene %s seed %llu  tolerance_time %g tolerance_distance %g margin %g%s%s%s%s\n",
-                s.family.c_str(), static_cast<unsigned long long>(s.seed), s.tolerance_time, s.tolerance_distance,
-                s.margin, s.check_scene ? "" : " no-scene", s.check_self ? "" : " no-self",
-                s.every_pair ? " every-pair" : "", s.shortest ? " shortest" : "");
-  out += line;
-  std::size_t v = 0;
-  for (std::size_t i = 0; i < s.links.size(); ++i) {
-    const Link& l = s.links[i];
-    std::snprintf(line, sizeof line, "link%zu parent %d %s axis %.17g %.17g %.17g", i, l.parent,
-                  l.parent < 0 ? "root" : kinds[static_cast<int>(l.joint)], l.axis.x(), l.axis.y(), l.axis.z());
-    out += line + pose(l.origin);
-    if (l.master >= 0) {
-      std::snprintf(line, sizeof line, " mimics link%d * %.17g + %.17g", l.master, l.multiplier, l.offset);
-      out += line;
-    }
-    if (l.hasVariable()) {
-      std::snprintf(line, sizeof line, " q %.17g -> %.17g", s.q0[v], s.q1[v]);
-      out += line;
-      ++v;
-    }
-    out += "\n";
-  }
-  for (std::size_t i = 0; i < s.bodies.size(); ++i) {
-    const Body& b = s.bodies[i];
-    const Piece p = b.geometry->piece(0, {});
-    std::snprintf(line, sizeof line, "body %zu: %s on %s", i, b.geometry->name().c_str(),
-                  b.link < 0 ? "world" : ("link" + std::to_string(b.link)).c_str());
-    out += line;
-    if (!b.geometry->isMesh()) {
-      std::snprintf(line, sizeof line, " half %.17g %.17g %.17g", p.half.x(), p.half.y(), p.half.z());
-      out += line;
-    }
-    out += pose(b.pose) + "\n";
-  }
-  for (const auto& [a, b] : s.allowed) {
-    std::snprintf(line, sizeof line, "allowed %d %d\n", a, b);
-    out += line;
-  }
-  return out;
 }
 
 }  // namespace campaign

@@ -79,7 +79,4 @@ class Kinematics {
   std::vector<double> dq_;
 };
 
-/// The scene in words, for a person who looks for a fault.
-std::string describe(const Scene& scene);
-
 }  // namespace campaign

@@ -18,21 +18,14 @@ constexpr char kHead[] = "fcl_artic-campaign-scenes/1";
 
 class Writer {
  public:
-  explicit Writer(const std::string& file) : file_(file), out_(std::fopen(file.c_str(), "w")) {
-    if (!out_) fail();
-    word(kHead);
-    endLine();
+  void word(const std::string& w) { text_ += w + " "; }
+  void integer(std::uint64_t i) { word(std::to_string(i)); }
+  void index(int i) { word(std::to_string(i)); }
+  void number(double x) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%a", x);
+    word(digits);
   }
-  ~Writer() {
-    if (out_) std::fclose(out_);
-  }
-  Writer(const Writer&) = delete;
-  Writer& operator=(const Writer&) = delete;
-
-  void word(const std::string& w) { std::fprintf(out_, "%s ", w.c_str()); }
-  void integer(std::uint64_t i) { std::fprintf(out_, "%llu ", static_cast<unsigned long long>(i)); }
-  void index(int i) { std::fprintf(out_, "%d ", i); }
-  void number(double x) { std::fprintf(out_, "%a ", x); }
   void vector(const Vec3& v) {
     for (int k = 0; k < 3; ++k) number(v[k]);
   }
@@ -40,19 +33,11 @@ class Writer {
     for (int k = 0; k < 3; ++k) vector(M.R.col(k));
     vector(M.p);
   }
-  void endLine() { std::fputc('\n', out_); }
-  void close() {
-    const bool failed = std::ferror(out_) != 0;
-    std::FILE* const out = out_;
-    out_ = nullptr;
-    if (std::fclose(out) != 0 || failed) fail();
-  }
+  void endLine() { text_ += '\n'; }
+  const std::string& text() const { return text_; }
 
  private:
-  [[noreturn]] void fail() const { throw std::runtime_error("can't write '" + file_ + "'"); }
-
-  std::string file_;
-  std::FILE* out_;
+  std::string text_ = std::string(kHead) + " \n";
 };
 
 class Reader {
@@ -62,8 +47,14 @@ class Reader {
     if (!(in_ >> head) || head != kHead) fail();
   }
 
-  /// False at the file's end.
-  bool next(std::string& w) { return static_cast<bool>(in_ >> w); }
+  /// False at the file's end. The rest of a line after "#" is for people.
+  bool next(std::string& w) {
+    while (in_ >> w) {
+      if (w != "#") return true;
+      std::getline(in_, w);
+    }
+    return false;
+  }
   std::string word() {
     std::string w;
     if (!next(w)) fail();
@@ -229,8 +220,8 @@ Scene readScene(const std::vector<GeometryPtr>& geometries, Reader& in) {
 
 }  // namespace
 
-void writeScenes(const std::vector<Scene>& scenes, const std::string& file) {
-  Writer out(file);
+std::string toText(const std::vector<Scene>& scenes) {
+  Writer out;
   std::map<const Geometry*, int> numbers;
   for (const Scene& s : scenes) {
     for (const Body& b : s.bodies) {
@@ -238,7 +229,13 @@ void writeScenes(const std::vector<Scene>& scenes, const std::string& file) {
     }
     write(s, numbers, out);
   }
-  out.close();
+  return out.text();
+}
+
+void writeFile(const std::string& text, const std::string& file) {
+  std::FILE* out = std::fopen(file.c_str(), "w");
+  const bool written = out && std::fputs(text.c_str(), out) >= 0;
+  if (!out || std::fclose(out) != 0 || !written) throw std::runtime_error("can't write '" + file + "'");
 }
 
 std::vector<Scene> readScenes(const std::string& file) {

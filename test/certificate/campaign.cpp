@@ -31,70 +31,14 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+using campaign::Tally;
 
 double microseconds(Clock::time_point begin) {
   return std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
 }
 
-struct Sum {
-  std::size_t free = 0, other = 0, missing = 0, nothing_claimed = 0;
-  std::vector<double> query_us, emit_us, check_us, bytes, motion_bytes;
-  std::map<std::string, int> reasons;
-  std::size_t verified = 0, meetings = 0, refused = 0;
-  std::size_t forged = 0, forged_accepted = 0, flipped = 0, flipped_accepted = 0;
-
-  void add(const Sum& other_sum) {
-    free += other_sum.free;
-    other += other_sum.other;
-    missing += other_sum.missing;
-    nothing_claimed += other_sum.nothing_claimed;
-    verified += other_sum.verified;
-    meetings += other_sum.meetings;
-    refused += other_sum.refused;
-    forged += other_sum.forged;
-    forged_accepted += other_sum.forged_accepted;
-    flipped += other_sum.flipped;
-    flipped_accepted += other_sum.flipped_accepted;
-    for (const auto& [reason, n] : other_sum.reasons) reasons[reason] += n;
-    const auto append = [](std::vector<double>& to, const std::vector<double>& from) {
-      to.insert(to.end(), from.begin(), from.end());
-    };
-    append(query_us, other_sum.query_us);
-    append(emit_us, other_sum.emit_us);
-    append(check_us, other_sum.check_us);
-    append(bytes, other_sum.bytes);
-    append(motion_bytes, other_sum.motion_bytes);
-  }
-  bool good() const { return refused == 0 && forged_accepted == 0; }
-};
-
-double at(std::vector<double> values, double part) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
-}
-
-void print(const std::string& name, const Sum& sum) {
-  std::printf("%s: %zu free, %zu others; without a proof %zu, nothing claimed %zu\n", name.c_str(), sum.free, sum.other,
-              sum.missing, sum.nothing_claimed);
-  std::printf("  VERIFIED %zu, %zu of them with a meeting; not verified %zu\n", sum.verified, sum.meetings,
-              sum.refused);
-  const auto row = [](const char* what, const std::vector<double>& values) {
-    std::printf("  %-28s median %8.1f  95 %% %8.1f  largest %9.1f\n", what, at(values, 0.5), at(values, 0.95),
-                at(values, 1));
-  };
-  row("proof, bytes", sum.bytes);
-  row("motion's text, bytes", sum.motion_bytes);
-  row("query, us", sum.query_us);
-  row("query with certificate, us", sum.emit_us);
-  row("verifier, us", sum.check_us);
-  if (sum.flipped > 0) {
-    std::printf("  single bits flipped %zu, of these still proofs of the same claim %zu\n", sum.flipped,
-                sum.flipped_accepted);
-  }
-  if (sum.forged > 0)
-    std::printf("  false claims with forged proofs %zu, accepted %zu\n", sum.forged, sum.forged_accepted);
-  for (const auto& [reason, n] : sum.reasons) std::printf("    %d times: %s\n", n, reason.c_str());
+void print(const std::string& name, const Tally& tally) {
+  std::printf("%s", toText(name, tally).c_str());
   std::fflush(stdout);
 }
 
@@ -120,7 +64,7 @@ class Judge {
   }
 
   /// @param free  the motion is; else it certainly touches, if `meets`.
-  void look(const std::string& name, const Certificate& certificate, bool free, bool meets, Sum& sum) {
+  void look(const std::string& name, const Certificate& certificate, bool free, bool meets, Tally& tally) {
     if (certificate.world != world_text_) {
       world_text_ = certificate.world;
       world_ = std::make_unique<verify::World>(verify::readWorld(*world_text_));
@@ -129,15 +73,12 @@ class Judge {
     const std::string record = certificate.record();
     const auto begin = Clock::now();
     const verify::Verdict verdict = verdictOn(record);
-    sum.check_us.push_back(microseconds(begin));
-    sum.verified += verdict.verified;
-    sum.meetings += verdict.verified && verdict.contact;
-    if (!verdict.verified) {
-      ++sum.refused;
-      ++sum.reasons["NOT VERIFIED: " + name + ": " + verdict.reason];
-    }
+    tally.note("verifier, us", microseconds(begin));
+    tally.count("VERIFIED", verdict.verified);
+    tally.count("with a meeting", verdict.verified && verdict.contact);
+    if (!verdict.verified) tally.fault("NOT VERIFIED: " + name + ": " + verdict.reason);
     write(name, record);
-    if (forge_) forge(certificate, free, meets, sum);
+    if (forge_) forge(certificate, free, meets, tally);
   }
 
  private:
@@ -158,7 +99,7 @@ class Judge {
     std::ofstream(folder_ / (name + ".fac"), std::ios::binary | std::ios::app) << record;
   }
 
-  void forge(const Certificate& certificate, bool free, bool meets, Sum& sum) {
+  void forge(const Certificate& certificate, bool free, bool meets, Tally& tally) {
     const std::string nodes = certificate.proof.substr(32);
     // A bit more or less. The claim stays what it is, as the motion's hash shows: what is accepted is a proof all the
     // same. A flipped bit of the motion or of the hash is never accepted.
@@ -169,12 +110,10 @@ class Judge {
       const std::size_t bit = flips_ == 0 ? i : random_() % bits;
       std::string flipped = record;
       flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << bit % 8));
-      ++sum.flipped;
-      if (!isVerified(flipped)) continue;
-      ++sum.flipped_accepted;
-      if (bit / 8 >= hints) continue;
-      ++sum.forged_accepted;
-      ++sum.reasons["A RECORD OF ANOTHER MOTION WAS ACCEPTED"];
+      const bool accepted = isVerified(flipped), of_motion = bit / 8 < hints;
+      tally.mutant("a bit of the motion flipped", 1, of_motion, of_motion && !accepted);
+      tally.mutant("a bit of the proof flipped", 0, !of_motion, !of_motion && !accepted);
+      if (of_motion && accepted) tally.fault("A RECORD OF ANOTHER MOTION WAS ACCEPTED");
     }
     if (free) {
       if (kept_.size() < 20) kept_.push_back(nodes);
@@ -188,10 +127,9 @@ class Judge {
     if (const std::size_t at = nodes.rfind(std::string("\x20\0", 2)); at != std::string::npos)
       proofs.push_back(nodes.substr(0, at));
     for (const std::string& proof : proofs) {
-      ++sum.forged;
-      if (!verdictOn(recordOf(lie, proof)).verified) continue;
-      ++sum.forged_accepted;
-      ++sum.reasons["A FALSE CLAIM WAS ACCEPTED"];
+      const bool accepted = verdictOn(recordOf(lie, proof)).verified;
+      tally.mutant("a false claim with a forged proof", 1, true, !accepted);
+      if (accepted) tally.fault("A FALSE CLAIM WAS ACCEPTED");
     }
   }
 
@@ -206,57 +144,58 @@ class Judge {
 
 /// Takes an answer's certificate, if it has a proof.
 template <class Result>
-void take(const std::string& name, const Result& result, Judge& judge, Sum& sum) {
+void take(const std::string& name, const Result& result, Judge& judge, Tally& tally) {
   const Certificate& certificate = *result.certificate;
   if (!certificate) {
     const bool nothing = certificate.missing.rfind("nothing is claimed", 0) == 0;
-    ++(nothing ? sum.nothing_claimed : sum.missing);
-    if (!nothing) ++sum.reasons[name + ": " + certificate.missing];
+    tally.count("nothing claimed", nothing);
+    tally.count("without a proof", !nothing);
+    if (!nothing) std::printf("%s: %s\n", name.c_str(), certificate.missing.c_str());
     return;
   }
-  sum.bytes.push_back(static_cast<double>(certificate.proof.size()));
-  sum.motion_bytes.push_back(static_cast<double>(certificate.motion.size()));
-  judge.look(name, certificate, result.isFree(), result.certain, sum);
+  tally.note("proof, bytes", static_cast<double>(certificate.proof.size()));
+  tally.note("motion's text, bytes", static_cast<double>(certificate.motion.size()));
+  judge.look(name, certificate, result.isFree(), result.certain, tally);
 }
 
 /// Asks for an answer, and again for its certificate.
 /// @param query  query(request, result)
 template <class Request, class Result, class Query>
-void ask(const Query& query, bool others, const std::string& name, Judge& judge, Sum& sum) {
+void ask(const Query& query, bool others, const std::string& name, Judge& judge, Tally& tally) {
   Request request;
   Result result;
   query(request, result);
   const auto begin = Clock::now();
   query(request, result);
   const double query_us = microseconds(begin);
-  if (!result.isFree()) ++sum.other;
+  tally.count("free", result.isFree());
+  tally.count("others", !result.isFree());
   if (!result.isFree() && !others) return;
   request.certificate = true;
   const auto again = Clock::now();
   query(request, result);
-  sum.emit_us.push_back(microseconds(again));
-  sum.query_us.push_back(query_us);
-  sum.free += result.isFree();
-  take(name, result, judge, sum);
+  tally.note("query with certificate, us", microseconds(again));
+  tally.note("query, us", query_us);
+  take(name, result, judge, tally);
 }
 template <class Motion>
 void ask(const ArticulatedCollisionManager& manager, const Motion& motion, bool others, const std::string& name,
-         Judge& judge, Sum& sum) {
+         Judge& judge, Tally& tally) {
   ask<CertifiedRequest, CertifiedResult>(
       [&](const CertifiedRequest& request, CertifiedResult& result) {
         manager.continuousCollide(motion, request, result);
       },
-      others, name, judge, sum);
+      others, name, judge, tally);
 }
 
-void panda(const fs::path& data, std::size_t most, bool others, Judge& judge, Sum& all) {
+void panda(const fs::path& data, std::size_t most, bool others, Judge& judge, Tally& all) {
   using namespace planning_data;
   const Robot robot = readRobot(data, "panda");
   for (const std::string name : {"bookshelf_small", "bookshelf_tall", "bookshelf_thin", "box", "cage", "table_pick",
                                  "table_under_pick", "thin"}) {
     const Environment environment = readEnvironment(data / "problems/panda" / (name + ".json"), *robot.tree);
     std::map<int, std::shared_ptr<const ArticulatedCollisionManager>> managers;
-    Sum sum;
+    Tally tally;
     std::size_t asked[2] = {0, 0};
     for (const Edge& edge : readTrace(data / "edges" / ("panda_trace." + name + ".json"))) {
       if (edge.hit && !others) continue;
@@ -266,18 +205,18 @@ void panda(const fs::path& data, std::size_t most, bool others, Judge& judge, Su
       if (!manager) manager = makeManager(robot, environment.problem(edge.problem).scene);
       const auto motion = JointMotion::linear(*robot.tree, environment.configuration(*robot.tree, edge.from),
                                               environment.configuration(*robot.tree, edge.to));
-      ask(*manager, motion, others, file, judge, sum);
+      ask(*manager, motion, others, file, judge, tally);
     }
-    print(name, sum);
-    all.add(sum);
+    print(name, tally);
+    all.add(tally);
   }
 }
 
 /// Two bodies of any kinds, by FCL's motions (data/pairs).
 void pairsOf(pairs::Bodies bodies, const char* set, std::size_t most, std::uint64_t seed, bool others, Judge& judge,
-             Sum& all) {
+             Tally& all) {
   using namespace pairs;
-  Sum sum;
+  Tally tally;
   for (const Moves moves : {Moves::interp, Moves::translation, Moves::screw, Moves::spline}) {
     for (std::size_t i = 0; i < most / 4; ++i) {
       PairOptions options;
@@ -292,15 +231,15 @@ void pairsOf(pairs::Bodies bodies, const char* set, std::size_t most, std::uint6
             fcl_artic::continuousCollide(query.body1->geometry.get(), motion1.get(), query.body2->geometry.get(),
                                          motion2.get(), request, result);
           },
-          others, set + std::to_string(static_cast<int>(moves)) + "_" + std::to_string(i), judge, sum);
+          others, set + std::to_string(static_cast<int>(moves)) + "_" + std::to_string(i), judge, tally);
     }
   }
-  print(set, sum);
-  all.add(sum);
+  print(set, tally);
+  all.add(tally);
 }
 
 /// The arm of bench_arm amid spheres, 100,000 triangles, without self-collision.
-void arm(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Sum& all) {
+void arm(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Tally& all) {
   bench::ArmSceneOptions options;
   options.seed = seed;
   const bench::ArmScene scene = bench::makeArmScene(options);
@@ -319,7 +258,7 @@ void arm(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Sum& a
       request.check_self = false;
       return !manager.continuousCollide(q.q0, q.q1, request).isFree();
     });
-    Sum sum;
+    Tally tally;
     for (const auto& set : ends) {
       for (const bench::ArmQuery& q : set) {
         ask<CertifiedRequest, CertifiedResult>(
@@ -328,18 +267,18 @@ void arm(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Sum& a
               own.check_self = false;
               manager.continuousCollide(JointMotion::linear(*scene.tree, q.q0, q.q1), own, result);
             },
-            others, "arm", judge, sum);
+            others, "arm", judge, tally);
       }
     }
-    print("arm, " + std::to_string(static_cast<int>(step)) + " degrees", sum);
-    all.add(sum);
+    print("arm, " + std::to_string(static_cast<int>(step)) + " degrees", tally);
+    all.add(tally);
   }
 }
 
 /// Two links with up to three joint variables between them, which have tables (test/tables), on small and large
 /// motions.
-void links(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Sum& all) {
-  Sum sum;
+void links(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Tally& all) {
+  Tally tally;
   for (std::size_t i = 0; i < most; ++i) {
     pairs::Random random(pairs::Random::mix(seed, i));
     const tables::RandomLinks links(random);
@@ -351,37 +290,39 @@ void links(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Sum&
     for (int k = 0; k < 40; ++k) {
       const Eigen::VectorXd q0 = links.draw(random), q1 = q0 + random.logUniform(1e-5, 1) * (links.draw(random) - q0);
       const auto motion = JointMotion::linear(*links.tree, q0, q1);
-      ask(manager, motion, others, "links_" + std::to_string(i), judge, sum);
+      ask(manager, motion, others, "links_" + std::to_string(i), judge, tally);
     }
   }
-  print("links", sum);
-  all.add(sum);
+  print("links", tally);
+  all.add(tally);
 }
 
 /// Random robots from URDF text (test/urdf).
-void trees(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Sum& all) {
-  Sum sum;
-  urdf_trees::Options options;
-  options.trees = static_cast<int>(most);
+void trees(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Tally& all) {
+  Tally tally;
+  const auto trees = urdf_trees::campaignOfTrees([&](std::uint64_t tree, const CertifiedResult& result) {
+    tally.count("free", result.isFree());
+    tally.count("others", !result.isFree());
+    if (result.isFree() || others) take("tree_" + std::to_string(tree), result, judge, tally);
+  });
+  campaign::Options options;
+  options.cases = most;
   options.seed = seed;
-  options.certificates = [&](int tree, const CertifiedResult& result) {
-    sum.free += result.isFree();
-    sum.other += !result.isFree();
-    if (result.isFree() || others) take("tree_" + std::to_string(tree), result, judge, sum);
-  };
-  const urdf_trees::Report report = urdf_trees::run(options);
-  std::printf("%s", urdf_trees::toText(report).c_str());
-  print("trees", sum);
-  all.add(sum);
+  options.threads = 1;
+  const campaign::Report report = run(trees, options);
+  std::printf("%s", toText(report).c_str());
+  print("trees", tally);
+  all.add(tally);
+  for (const auto& [kind, cases] : report.total.faultKinds()) all.fault(kind);
 }
 
 /// Trajectories of the Panda: from one end of an edge to the other and on to a third configuration, as cubic pieces, at
 /// rest at the ends only, and with straight pieces and parabolic blends.
-void trajectories(const fs::path& data, std::size_t most, bool others, Judge& judge, Sum& all) {
+void trajectories(const fs::path& data, std::size_t most, bool others, Judge& judge, Tally& all) {
   using namespace planning_data;
   const Robot robot = readRobot(data, "panda");
   const KinematicTree& tree = *robot.tree;
-  Sum sum;
+  Tally tally;
   for (const std::string name : {"bookshelf_small", "box", "cage", "table_pick", "thin"}) {
     const Environment environment = readEnvironment(data / "problems/panda" / (name + ".json"), tree);
     std::map<int, std::shared_ptr<const ArticulatedCollisionManager>> managers;
@@ -401,19 +342,19 @@ void trajectories(const fs::path& data, std::size_t most, bool others, Judge& ju
       const Eigen::VectorXd rest = Eigen::VectorXd::Zero(q0.size());
       const std::string file = "trajectory_" + name + "_" + std::to_string(edge.problem);
       ask(*manager, JointTrajectory::cubic(tree, times, {q0, q1, q2}, {rest, 0.2 * (q2 - q0), rest}), others, file,
-          judge, sum);
-      ask(*manager, JointTrajectory::parabolicBlends(tree, times, {q0, q1, q2}, 0.2), others, file, judge, sum);
+          judge, tally);
+      ask(*manager, JointTrajectory::parabolicBlends(tree, times, {q0, q1, q2}, 0.2), others, file, judge, tally);
       ++asked;
     }
   }
-  print("trajectories", sum);
-  all.add(sum);
+  print("trajectories", tally);
+  all.add(tally);
 }
 
 /// Small worlds with all that there is: attached objects, moving obstacles, margins, trajectories, solids, ignored
 /// contacts (test/modes).
-void modesOf(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Sum& all) {
-  std::map<std::string, Sum> sums;
+void modesOf(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Tally& all) {
+  std::map<std::string, Tally> tallies;
   for (std::size_t i = 0; i < most; ++i) {
     modes::Random random(seed + i);
     const modes::World world(random);
@@ -429,11 +370,11 @@ void modesOf(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Su
           own.ignore_initial_contact = ignore;
           world.ask(own, result);
         },
-        others, "modes_" + std::to_string(i), judge, sums[kind]);
+        others, "modes_" + std::to_string(i), judge, tallies[kind]);
   }
-  for (const auto& [kind, sum] : sums) {
-    print(kind, sum);
-    all.add(sum);
+  for (const auto& [kind, tally] : tallies) {
+    print(kind, tally);
+    all.add(tally);
   }
 }
 
@@ -459,7 +400,7 @@ int main(int argc, char** argv) try {
   app.add_flag("--contacts", others, "motions that are not free, too: until their t_lower");
   CLI11_PARSE(app, argc, argv);
   Judge judge(out, forge, flips);
-  Sum all;
+  Tally all;
   if (set == "arm") {
     arm(most, seed, others, judge, all);
   } else if (set == "links") {
@@ -481,7 +422,7 @@ int main(int argc, char** argv) try {
     (set == "panda" ? panda : trajectories)(data, most, others, judge, all);
   }
   print("all", all);
-  return all.good() && all.verified > 0 ? 0 : 1;
+  return all.faults() == 0 && all["VERIFIED"] > 0 ? 0 : 1;
 } catch (const std::exception& error) {
   std::cerr << "certificate_campaign: " << error.what() << '\n';
   return 1;

@@ -11,7 +11,6 @@
 // FCL_ARTIC_CROSSCHECK_QUERIES sets the number of queries of each test.
 
 #include <algorithm>
-#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -20,6 +19,7 @@
 #include <fcl/narrowphase/distance.h>
 #include <gtest/gtest.h>
 
+#include "../campaign/harness.h"
 #include "fcl_artic/manager.h"
 #include "random_robot.h"
 #include "rivals.h"
@@ -37,11 +37,6 @@ using Mesh = fcl::BVHModel<fcl::RSSd>;
 constexpr double kFclStep = 1e-5;    // FCL's t_err for mesh pairs
 constexpr double kAgreement = 1e-4;  // times nearer than this count as equal; the rest needs its explanation
 constexpr double kRounding = 1e-9;   // of FCL's distances and of a time computed from them
-
-int queries(int standard) {
-  const char* wanted = std::getenv("FCL_ARTIC_CROSSCHECK_QUERIES");
-  return wanted ? std::max(1, std::atoi(wanted)) : standard;
-}
 
 struct Body {
   LinkId link;  // -1: an obstacle, at `offset` in the world
@@ -135,7 +130,7 @@ struct CertifiedWay {
   const char* name;
   Method method;
   RedonOptions redon;
-  int every;  // every how many queries it is asked: as written, the paper's takes a while
+  std::uint64_t every;  // every how many queries it is asked: as written, the paper's takes a while
 };
 
 /// The library's own, and the paper's with what the library adds to it and without.
@@ -238,18 +233,13 @@ std::size_t bodyIndex(const Query& query, const BodyRef& ref) {
   return static_cast<std::size_t>(found - query.bodies.begin());
 }
 
-struct Tally {
-  int asked = 0, hits = 0, equal = 0, fcl_early = 0, fcl_near_miss = 0, fcl_end = 0, undecidable = 0;
-  int by_standard = 0;  // answers of the paper's method that left some pair to the standard one
-};
-
-void compare(const Query& query, const CertifiedResult& certified, const FclAnswer& fcl, Tally& tally) {
+void compare(const Query& query, const CertifiedResult& certified, const FclAnswer& fcl, campaign::Tally& tally) {
   ASSERT_NE(certified.status, Status::undecided);
   const bool contact = certified.status == Status::contact;
   const bool fcl_contact = fcl.toc < kFree;
-  ++tally.asked;
-  tally.hits += contact;
-  tally.by_standard += certified.statistics.redon.pairs_by_standard > 0;
+  tally.count("cases");
+  tally.count("hits", contact);
+  tally.count("by standard", certified.statistics.redon.pairs_by_standard > 0);  // some pair, by the paper's method
 
   if (fcl_contact && fcl.toc > 0) {  // what makes FCL's answer usable at all
     EXPECT_LE(gap(query, fcl.a, fcl.b, fcl.toc),
@@ -257,11 +247,11 @@ void compare(const Query& query, const CertifiedResult& certified, const FclAnsw
   }
   if (!contact) {
     if (!fcl_contact) {
-      ++tally.equal;
+      tally.count("equal");
       return;
     }
     EXPECT_EQ(sampledContact(query, fcl.a, fcl.b, fcl.toc, 1), kFree) << "proven free, FCL stops at " << fcl.toc;
-    ++tally.fcl_near_miss;
+    tally.count("FCL near miss");
     return;
   }
 
@@ -270,31 +260,31 @@ void compare(const Query& query, const CertifiedResult& certified, const FclAnsw
   if (!certified.certain) {  // a gap below the tolerance counts as contact: FCL may see it either way
     const std::size_t a = bodyIndex(query, first.body1), b = bodyIndex(query, first.body2);
     EXPECT_LE(gap(query, a, b, certified.t_lower), CertifiedRequest().tolerance_distance + kRounding);
-    ++tally.undecidable;
+    tally.count("undecidable");
     return;
   }
   EXPECT_LE(certified.t_upper - certified.t_lower, 1e-6 + kRounding);
   if (!fcl_contact) {
     EXPECT_GE(certified.t_upper, 1 - kFclStep) << "FCL missed a proven contact";
-    ++tally.fcl_end;
+    tally.count("FCL at the end");
     return;
   }
   EXPECT_LE(fcl.toc, certified.t_upper + kRounding) << "FCL's advancement ran past a proven contact";
   if (fcl.toc > certified.t_lower - kAgreement) {
-    ++tally.equal;
+    tally.count("equal");
   } else {
     EXPECT_EQ(sampledContact(query, fcl.a, fcl.b, fcl.toc, certified.t_lower), kFree)
         << "contact before t_lower = " << certified.t_lower << ", FCL stops at " << fcl.toc;
-    ++tally.fcl_early;
+    tally.count("FCL early");
   }
 }
 
-void run(bool self, std::uint64_t seed, int count) {
+void run(bool self, std::uint64_t seed, std::uint64_t count) {
   Random random(seed);
   const std::vector<CertifiedWay> all = ways();
-  std::vector<Tally> tallies(all.size());
-  int in_contact = 0;
-  for (int n = 0; n < count;) {
+  std::vector<campaign::Tally> tallies(all.size());
+  std::uint64_t in_contact = 0;
+  for (std::uint64_t n = 0; n < count;) {
     Query query = randomQuery(random, self);
     if (query.pairs.empty()) continue;
     const bool starts = startsInContact(query);
@@ -318,25 +308,22 @@ void run(bool self, std::uint64_t seed, int count) {
   }
   for (std::size_t m = 0; m < all.size(); ++m) {
     SCOPED_TRACE(all[m].name);
-    const Tally& tally = tallies[m];
-    std::cout << all[m].name << ", " << tally.asked << " queries, seed " << seed << ": " << tally.hits
-              << " contacts; equal " << tally.equal << ", FCL early " << tally.fcl_early << ", FCL near miss "
-              << tally.fcl_near_miss << ", at the end " << tally.fcl_end << ", undecidable " << tally.undecidable
-              << "; some pairs left to standard: " << tally.by_standard << '\n';
-    EXPECT_GE(tally.hits, 0.3 * tally.asked);
-    EXPECT_LE(tally.hits, 0.7 * tally.asked);
-    EXPECT_GE(tally.equal, 0.8 * tally.asked);
-    EXPECT_LE(tally.fcl_near_miss + tally.fcl_end + tally.undecidable, 0.05 * tally.asked);
-    EXPECT_LE(tally.by_standard, 0.2 * tally.asked);  // the paper's method answers for itself
+    const campaign::Tally& tally = tallies[m];
+    std::cout << "seed " << seed << "\n" << toText(all[m].name, tally);
+    EXPECT_GE(tally.share("hits"), 0.3);
+    EXPECT_LE(tally.share("hits"), 0.7);
+    EXPECT_GE(tally.share("equal"), 0.8);
+    EXPECT_LE(tally.share("FCL near miss") + tally.share("FCL at the end") + tally.share("undecidable"), 0.05);
+    EXPECT_LE(tally.share("by standard"), 0.2);  // the paper's method answers for itself
   }
 }
 
 TEST(OrientedAdvancementTest, AgreesOnArmsAmidObstacles) {
-  run(false, 20040401, queries(300));
+  run(false, 20040401, campaign::fromEnvironment("FCL_ARTIC_CROSSCHECK_QUERIES", 300));
 }
 
 TEST(OrientedAdvancementTest, AgreesOnArmsAgainstThemselves) {
-  run(true, 20040402, queries(100));
+  run(true, 20040402, campaign::fromEnvironment("FCL_ARTIC_CROSSCHECK_QUERIES", 100));
 }
 
 }  // namespace

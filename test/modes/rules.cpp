@@ -8,24 +8,10 @@ namespace modes {
 
 using namespace fcl_artic;
 
-const char* const kRuleNames[kNumRules] = {"bracket", "most",    "order", "budget",  "ordered",
-                                           "pairs",   "ignored", "cut",   "sampled", "proven"};
-
-void Tally::add(const Tally& other) {
-  for (std::size_t i = 0; i < kNumRules; ++i) {
-    telling[i] += other.telling[i];
-    broken[i] += other.broken[i];
-  }
-  cases += other.cases;
-  queries += other.queries;
-  free += other.free;
-  certain += other.certain;
-  uncertain += other.uncertain;
-  undecided += other.undecided;
-  thrown += other.thrown;
-  for (const std::string& finding : other.findings) {
-    if (findings.size() < 20) findings.push_back(finding);
-  }
+const std::vector<std::string>& rules() {
+  static const std::vector<std::string> names = {"bracket", "most",    "order", "budget",  "ordered",
+                                                 "pairs",   "ignored", "cut",   "sampled", "proven"};
+  return names;
 }
 
 std::string describe(const Asked& asked) {
@@ -86,8 +72,8 @@ std::set<Pair> reportedPairs(const CertifiedResult& r) {
 
 class Check {
  public:
-  Check(const World& world, const std::vector<Asked>& asked, const std::string& replay, Tally& tally)
-      : world_(world), asked_(asked), replay_(replay), tally_(tally) {}
+  Check(const World& world, const std::vector<Asked>& asked, campaign::Case& c)
+      : world_(world), asked_(asked), case_(c) {}
 
   void all(Random& random) {
     for (const Asked& a : asked_) {
@@ -111,15 +97,15 @@ class Check {
   }
 
  private:
-  void hold(Rule rule, bool good, const std::string& what) {
-    if (good) return;
-    // Of one case the first of each rule.
-    if (tally_.broken[rule]++ == 0) tally_.findings.push_back(replay_ + " " + kRuleNames[rule] + ": " + what);
+  /// An answer that is wrong could have been seen.
+  void tell(const std::string& rule, bool telling = true) { case_.tally.count(rule + " told", telling); }
+  void hold(const std::string& rule, bool good, const std::string& what) {
+    if (!good && broken_.insert(rule).second) case_.fault(rule, what);
   }
 
   void bracket(const Asked& a) {
     const CertifiedResult& r = a.result;
-    ++tally_.telling[kBracket];
+    tell("bracket");
     bool good = world_.begin() <= r.t_lower && r.t_lower <= r.t_upper && r.t_upper <= world_.end();
     if (r.isFree()) good = good && r.t_lower == world_.end() && r.contacts.empty();
     if (r.certain) good = good && r.status == Status::contact;
@@ -135,39 +121,39 @@ class Check {
       if (contact.certain) good = good && contact.t_upper >= r.t_upper;
       if (a.request.mode == ContactMode::first) good = good && contact.t_lower <= end + rounding + 1e-12;
     }
-    hold(kBracket, good, describe(a));
+    hold("bracket", good, describe(a));
   }
 
   void most(const Asked& a) {
     const auto& contacts = a.result.contacts;
-    if (contacts.size() > 1) ++tally_.telling[kMost];
+    if (contacts.size() > 1) tell("most");
     bool good = contacts.size() <= a.request.max_contacts;
     if (a.request.max_contacts > 0 && a.result.status == Status::contact) good = good && !contacts.empty();
     if (world_.isPair()) good = good && contacts.size() <= 1;
-    hold(kMost, good, describe(a));
+    hold("most", good, describe(a));
   }
 
   void order(const Asked& a) {
     const auto& contacts = a.result.contacts;
-    if (contacts.size() > 1) ++tally_.telling[kOrder];
+    if (contacts.size() > 1) tell("order");
     bool good = reportedPairs(a.result).size() == contacts.size();
     for (std::size_t i = 1; i < contacts.size(); ++i) good = good && contacts[i - 1].t_lower <= contacts[i].t_lower;
     for (const CertifiedContact& contact : contacts) {
       if (!a.result.certain) break;
       good = good && contacts.front().certain && (!contact.certain || contacts.front().t_upper <= contact.t_upper);
     }
-    hold(kOrder, good, describe(a));
+    hold("order", good, describe(a));
   }
 
   void budget(const Asked& a) {
-    tally_.telling[kBudget] += a.result.status == Status::undecided;
-    hold(kBudget, a.result.status != Status::undecided || a.request.work_budget > 0, describe(a));
+    tell("budget", a.result.status == Status::undecided);
+    hold("budget", a.result.status != Status::undecided || a.request.work_budget > 0, describe(a));
   }
 
   void ordered(const Asked& larger, const Asked& smaller) {
     const double upper = provenContact(world_, smaller.result), lower = provenFree(larger.result);
-    if (upper < kNever && lower > world_.begin()) ++tally_.telling[kOrdered];
-    hold(kOrdered, upper == kNever || lower <= upper, describe(larger) + " against " + describe(smaller));
+    if (upper < kNever && lower > world_.begin()) tell("ordered");
+    hold("ordered", upper == kNever || lower <= upper, describe(larger) + " against " + describe(smaller));
   }
 
   void pairs(const Asked& every, const Asked& other) {
@@ -176,8 +162,8 @@ class Check {
     if (every.result.contacts.size() >= every.request.max_contacts && reported.size() >= every.request.max_contacts)
       return;
     for (const Pair& pair : provenPairs(other.result)) {
-      ++tally_.telling[kPairs];
-      hold(kPairs, reported.count(pair) > 0,
+      tell("pairs");
+      hold("pairs", reported.count(pair) > 0,
            pair.first + " " + pair.second + " of " + describe(other) + " is not in " + describe(every));
     }
   }
@@ -186,8 +172,8 @@ class Check {
     if (&a > &b || !a.question.ignore_initial) return;
     if (a.result.status == Status::undecided || b.result.status == Status::undecided) return;
     const std::set<Pair> pairs = ignoredOf(a.result);
-    tally_.telling[kIgnored] += !pairs.empty();
-    hold(kIgnored, pairs == ignoredOf(b.result), describe(a) + " against " + describe(b));
+    tell("ignored", !pairs.empty());
+    hold("ignored", pairs == ignoredOf(b.result), describe(a) + " against " + describe(b));
   }
 
   void cut(const Asked& a, const Asked& b) {
@@ -197,8 +183,8 @@ class Check {
       return;
     // (Of a trajectory the pieces after the last contact that is asked for are not looked at; so a budget that is
     // enough for few contacts need not be for many.)
-    tally_.telling[kCut] += a.result.contacts.size() > 1 && x.max_contacts != y.max_contacts;
-    hold(kCut, a.result.status == b.result.status && a.result.t_lower == b.result.t_lower,
+    tell("cut", a.result.contacts.size() > 1 && x.max_contacts != y.max_contacts);
+    hold("cut", a.result.status == b.result.status && a.result.t_lower == b.result.t_lower,
          describe(a) + " against " + describe(b));
   }
 
@@ -214,13 +200,13 @@ class Check {
       const std::vector<Isometry3d> poses = world_.poses(t);
       for (const World::Watched& pair : world_.pairs()) {
         if (!(pair.scene ? a.request.check_scene : a.request.check_self) || ignored.count(pair.names)) continue;
-        ++tally_.telling[kSampled];
+        tell("sampled");
         const double margin = pair.margin >= 0 ? pair.margin : a.request.margin;
         const bool touches = world_.touches(pair, poses, margin);
         std::ostringstream what;
         what.precision(17);
         if (touches) what << pair.names.first << " " << pair.names.second << " touch at " << t << ", " << describe(a);
-        hold(kSampled, !touches, what.str());
+        hold("sampled", !touches, what.str());
       }
     }
   }
@@ -245,9 +231,9 @@ class Check {
       const Pair names = pairOf(contact.body1.name, contact.body2.name);
       const auto pair = std::find_if(world_.pairs().begin(), world_.pairs().end(),
                                      [&](const World::Watched& watched) { return watched.names == names; });
-      ++tally_.telling[kProven];
+      tell("proven");
       if (pair == world_.pairs().end()) {
-        hold(kProven, false, names.first + " " + names.second + " is not to be checked: " + describe(a));
+        hold("proven", false, names.first + " " + names.second + " is not to be checked: " + describe(a));
         continue;
       }
       const double margin = pair->margin >= 0 ? pair->margin : a.request.margin;
@@ -257,14 +243,14 @@ class Check {
       std::ostringstream what;
       what << names.first << " " << names.second << " are " << distance << " m apart at their t_upper "
            << contact.t_upper << ", ";
-      hold(kProven, distance <= most, what.str() + describe(a));
+      hold("proven", distance <= most, what.str() + describe(a));
     }
   }
 
   const World& world_;
   const std::vector<Asked>& asked_;
-  const std::string& replay_;
-  Tally& tally_;
+  campaign::Case& case_;
+  std::set<std::string> broken_;
 };
 
 }  // namespace
@@ -313,28 +299,29 @@ std::vector<Asked> randomQueries(Random& random, int count) {
   return queries;
 }
 
-void check(const World& world, const std::vector<Asked>& asked, Random& random, const std::string& replay,
-           Tally& tally) {
-  Check(world, asked, replay, tally).all(random);
+void check(const World& world, const std::vector<Asked>& asked, Random& random, campaign::Case& c) {
+  Check(world, asked, c).all(random);
 }
 
-void runCase(std::uint64_t seed, Tally& tally) {
-  Random random(seed);
-  const World world(random);
-  std::vector<Asked> asked = randomQueries(random, 12);
-  ++tally.cases;
-  for (Asked& a : asked) {
-    if (world.isTrajectory()) a.request.tolerance_time *= world.end() - world.begin();
-    world.ask(a.request, a.result);
-    ++tally.queries;
-    tally.free += a.result.isFree();
-    tally.undecided += a.result.status == Status::undecided;
-    tally.certain += a.result.certain;
-    tally.uncertain += a.result.status == Status::contact && !a.result.certain;
-  }
-  Tally own;
-  check(world, asked, random, "seed " + std::to_string(seed), own);
-  tally.add(own);
+campaign::Campaign campaignOfModes() {
+  campaign::Campaign all;
+  all.look = [](campaign::Case& c) {
+    Random random(c.id.seed);
+    const World world(random);
+    std::vector<Asked> asked = randomQueries(random, 12);
+    for (Asked& a : asked) {
+      if (world.isTrajectory()) a.request.tolerance_time *= world.end() - world.begin();
+      world.ask(a.request, a.result);
+      c.tally.count("queries");
+      c.tally.count("free", a.result.isFree());
+      c.tally.count("certain", a.result.certain);
+      c.tally.count("uncertain", a.result.status == Status::contact && !a.result.certain);
+      c.tally.count("undecided", a.result.status == Status::undecided);
+      if (c.words) *c.words += describe(a) + "\n";
+    }
+    check(world, asked, random, c);
+  };
+  return all;
 }
 
 }  // namespace modes

@@ -20,10 +20,10 @@
 // Each rule counts the cases in which it was telling: in which an answer that is wrong could have been seen.
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
+#include "harness.h"
 #include "world.h"
 
 namespace modes {
@@ -47,27 +47,18 @@ struct Asked {
   fcl_artic::CertifiedResult result;
 };
 
-enum Rule { kBracket, kMost, kOrder, kBudget, kOrdered, kPairs, kIgnored, kCut, kSampled, kProven, kNumRules };
-extern const char* const kRuleNames[kNumRules];
-
-struct Tally {
-  std::array<long, kNumRules> telling{}, broken{};
-  long cases = 0, queries = 0, free = 0, certain = 0, uncertain = 0, undecided = 0, thrown = 0;
-  std::vector<std::string> findings;  ///< the first ones, to be read
-  void add(const Tally& other);
-};
+/// Names of the rules. How often one was telling is counted as "<rule> told".
+const std::vector<std::string>& rules();
 
 std::string describe(const Asked& asked);
 
 /// A random question's queries. The last max_contacts etc. are chosen at random.
 std::vector<Asked> randomQueries(Random& random, int count);
 
-/// Checks all rules among these answers.
-/// @param replay  names the case in findings.
-void check(const World& world, const std::vector<Asked>& asked, Random& random, const std::string& replay,
-           Tally& tally);
+/// Checks all rules among these answers. Of each rule the first fault is one of the case's.
+void check(const World& world, const std::vector<Asked>& asked, Random& random, campaign::Case& c);
 
-/// One case: a world, its queries, the rules.
-void runCase(std::uint64_t seed, Tally& tally);
+/// A case is a world and its queries; its seed is the campaign's plus its number.
+campaign::Campaign campaignOfModes();
 
 }  // namespace modes

@@ -2,14 +2,9 @@
 #include "pair_campaign.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
-#include <mutex>
 #include <stdexcept>
-#include <thread>
 
 #include "bounded_path.h"
 #include "exact_look.h"
@@ -17,6 +12,10 @@
 namespace pair_campaign {
 namespace {
 
+using campaign::Case;
+using campaign::Finding;
+using campaign::format;
+using campaign::Mutant;
 using fcl_artic::CertifiedContact;
 using fcl_artic::CertifiedPairResult;
 using fcl_artic::Status;
@@ -31,21 +30,6 @@ using Clock = std::chrono::steady_clock;
 constexpr double kRounding = 1e-12;
 /// Poses of the library and of the judge: rounding of FCL's screw axes, which may lie far away.
 constexpr double kPose = 1e-11;
-
-std::string format(const char* text, ...) {
-  char line[400];
-  va_list arguments;
-  va_start(arguments, text);
-  std::vsnprintf(line, sizeof line, text, arguments);
-  va_end(arguments);
-  return line;
-}
-
-const Family& familyOf(const std::string& name) {
-  for (const Family& f : families())
-    if (f.name == name) return f;
-  throw std::invalid_argument("no class of queries is named '" + name + "'");
-}
 
 pairs::PathPtr randomWobble(bool near, double scale, Random& random) {
   Wobble w;
@@ -83,18 +67,18 @@ class Examination {
   }
 
  private:
-  void add(Fault fault, const std::string& text) { findings_.push_back({fault, text}); }
+  void add(const char* fault, const std::string& text) { findings_.push_back({fault, text}); }
 
   void status() {
     const CertifiedPairResult& r = result_;
-    if (r.status == Status::undecided) add(Fault::undecided, format("from %.17g", r.t_lower));
+    if (r.status == Status::undecided) add("undecided", format("from %.17g", r.t_lower));
     if (!(r.t_lower >= 0 && r.t_lower <= r.t_upper && r.t_upper <= 1))
-      add(Fault::fields, format("bracket [%.17g, %.17g]", r.t_lower, r.t_upper));
+      add("fields", format("bracket [%.17g, %.17g]", r.t_lower, r.t_upper));
     if (r.status == Status::free) {
-      if (truth_.hit) add(Fault::missed, format("contact at t = %.17g", truth_.time));
-      if (r.t_lower != 1 || r.certain || !r.contacts.empty()) add(Fault::fields, "free, with more than that");
+      if (truth_.hit) add("missed", format("contact at t = %.17g", truth_.time));
+      if (r.t_lower != 1 || r.certain || !r.contacts.empty()) add("fields", "free, with more than that");
     } else if (truth_.hit && r.t_lower > truth_.time) {
-      add(Fault::late,
+      add("late",
           format("t_lower %.17g, contact at t = %.17g (%.3g before)", r.t_lower, truth_.time, r.t_lower - truth_.time));
     }
   }
@@ -103,7 +87,7 @@ class Examination {
     const CertifiedPairResult& r = result_;
     const double tolerance = answer_.request.tolerance_time, near = answer_.request.tolerance_distance;
     if (r.contacts.size() != 1) {
-      add(Fault::fields, format("%zu contacts", r.contacts.size()));
+      add("fields", format("%zu contacts", r.contacts.size()));
       return;
     }
     const CertifiedContact& c = r.contacts[0];
@@ -112,15 +96,15 @@ class Examination {
     // way round, and the answer knows of every proof.
     if (!(c.t_lower >= r.t_lower && c.t_lower <= c.t_upper) || (r.certain && !c.certain) ||
         (r.certain && c.t_upper > r.t_upper) || (c.certain && r.t_upper > c.t_upper))
-      add(Fault::fields,
+      add("fields",
           format("contact in [%.17g, %.17g], answer in [%.17g, %.17g]", c.t_lower, c.t_upper, r.t_lower, r.t_upper));
     if (c.o1 != query_.body1->geometry.get() || c.o2 != query_.body2->geometry.get())
-      add(Fault::fields, "contact of other geometries");
+      add("fields", "contact of other geometries");
     const auto good = [](const pairs::Body& b, std::intptr_t id) {
       return b.kind == pairs::Kind::mesh ? id >= 0 && id < b.numPieces() : id == -1;
     };
     if (!good(*query_.body1, c.b1) || !good(*query_.body2, c.b2)) {
-      add(Fault::fields, format("ids %ld and %ld", static_cast<long>(c.b1), static_cast<long>(c.b2)));
+      add("fields", format("ids %ld and %ld", static_cast<long>(c.b1), static_cast<long>(c.b2)));
       return;
     }
 
@@ -128,13 +112,13 @@ class Examination {
     const double way = judge_.speed() * (end - r.t_lower);
     if (r.certain) {
       const double gap = judge_.at(r.t_upper, 1e-6).gap;
-      if (!(gap <= kRounding)) add(Fault::unproven, format("gap %.3g m at t_upper %.17g", gap, r.t_upper));
+      if (!(gap <= kRounding)) add("unproven", format("gap %.3g m at t_upper %.17g", gap, r.t_upper));
       // 1e-15: t_upper is rounded
       if (r.t_upper - r.t_lower > tolerance + 1e-15 && way > near)
-        add(Fault::wide, format("width %.3g, way %.3g m", r.t_upper - r.t_lower, way));
+        add("wide", format("width %.3g, way %.3g m", r.t_upper - r.t_lower, way));
     } else {
       const double gap = judge_.at(r.t_lower, 1e-6).gap;
-      if (!(gap <= near + way)) add(Fault::false_contact, format("gap %.6g m at t_lower %.17g", gap, r.t_lower));
+      if (!(gap <= near + way)) add("false", format("gap %.6g m at t_lower %.17g", gap, r.t_lower));
     }
 
     const double time = r.certain ? r.t_upper : r.t_lower;
@@ -144,22 +128,20 @@ class Examination {
     const double from1 = pairs::distanceTo(*query_.body1, i, M_1, c.point),
                  from2 = pairs::distanceTo(*query_.body2, j, M_2, c.point);
     if (!(from1 <= allowed && from2 <= allowed))
-      add(Fault::point, format("point %.3g m and %.3g m from its pieces, allowed %.3g", from1, from2, allowed));
+      add("point", format("point %.3g m and %.3g m from its pieces, allowed %.3g", from1, from2, allowed));
 
-    if (!(std::abs(c.normal.norm() - 1) <= 1e-9)) add(Fault::normal, format("normal of length %.17g", c.normal.norm()));
+    if (!(std::abs(c.normal.norm() - 1) <= 1e-9)) add("normal", format("normal of length %.17g", c.normal.norm()));
     if (r.t_lower > 0) {
       // At t_lower the pieces are not yet in each other, and the normal parts them, up to some 1e-3 rad of it.
       const pairs::Pose L_1 = query_.path1->pose(r.t_lower), L_2 = query_.path2->pose(r.t_lower);
       const double gap = along(*query_.body1, i, L_1, *query_.body2, j, L_2, c.normal);
-      if (!(gap >= -(1e-4 + 2 * way + near)))
-        add(Fault::normal, format("pieces overlap by %.3g m along the normal", -gap));
+      if (!(gap >= -(1e-4 + 2 * way + near))) add("normal", format("pieces overlap by %.3g m along the normal", -gap));
       // At t_lower their gap is what the bodies go until they touch, or what is too near to decide.
       const double apart = (c.nearest1 - c.nearest2).norm(), from = 1e-7 + way;
       const double off1 = pairs::distanceTo(*query_.body1, i, L_1, c.nearest1),
                    off2 = pairs::distanceTo(*query_.body2, j, L_2, c.nearest2);
       if (!(off1 <= from && off2 <= from && apart <= from + near))
-        add(Fault::witness,
-            format("nearest points %.3g m and %.3g m from their pieces, %.3g m apart", off1, off2, apart));
+        add("witness", format("nearest points %.3g m and %.3g m from their pieces, %.3g m apart", off1, off2, apart));
     }
   }
 
@@ -176,7 +158,7 @@ class Examination {
     const double off =
         std::max({offFrom(query_.path1, r.t_lower, r.tf1_at_lower), offFrom(query_.path2, r.t_lower, r.tf2_at_lower),
                   offFrom(query_.path1, r.t_upper, r.tf1_at_upper), offFrom(query_.path2, r.t_upper, r.tf2_at_upper)});
-    if (!(off <= kPose)) add(Fault::poses, format("off by %.3g", off));
+    if (!(off <= kPose)) add("poses", format("off by %.3g", off));
   }
 
   void swapped() {
@@ -185,14 +167,13 @@ class Examination {
     if (r.certain && s.certain) {
       if (std::max(r.t_lower, s.t_lower) > std::min(r.t_upper, s.t_upper) ||
           std::abs(r.t_lower - s.t_lower) > tolerance || std::abs(r.t_upper - s.t_upper) > tolerance)
-        add(Fault::swapped,
-            format("[%.17g, %.17g], swapped [%.17g, %.17g]", r.t_lower, r.t_upper, s.t_lower, s.t_upper));
+        add("swapped", format("[%.17g, %.17g], swapped [%.17g, %.17g]", r.t_lower, r.t_upper, s.t_lower, s.t_upper));
     } else if (r.status != s.status && (r.certain || s.certain)) {
-      add(Fault::swapped, "contact proven one way round, free the other");
+      add("swapped", "contact proven one way round, free the other");
     } else if (r.status == Status::contact && s.status == Status::contact) {
       // One of them is a graze to its solver: proven times of contact still end after proven free ones.
       if (std::max(r.t_lower, s.t_lower) > std::min(r.certain ? r.t_upper : 1.0, s.certain ? s.t_upper : 1.0))
-        add(Fault::swapped, "brackets contradict each other");
+        add("swapped", "brackets contradict each other");
     }
   }
 
@@ -201,16 +182,15 @@ class Examination {
     const double toc = d.time_of_contact;
     const double toc_err = fcl::ContinuousCollisionRequestd().toc_err;
     if (answer_.drop_in_time != toc || !(toc >= 0 && toc <= 1) || (!d.is_collide && toc != 1))
-      add(Fault::drop_in, format("returns %.17g, result says %d at %.17g", answer_.drop_in_time, d.is_collide, toc));
+      add("drop-in", format("returns %.17g, result says %d at %.17g", answer_.drop_in_time, d.is_collide, toc));
     const double off = std::max(offFrom(query_.path1, toc, d.contact_tf1), offFrom(query_.path2, toc, d.contact_tf2));
-    if (!(off <= kPose)) add(Fault::drop_in, format("contact_tf off by %.3g", off));
-    if (truth_.hit && !d.is_collide) add(Fault::drop_in, format("missed, contact at t = %.17g", truth_.time));
-    if (truth_.hit && toc > truth_.time)
-      add(Fault::drop_in, format("late: %.17g, contact at t = %.17g", toc, truth_.time));
+    if (!(off <= kPose)) add("drop-in", format("contact_tf off by %.3g", off));
+    if (truth_.hit && !d.is_collide) add("drop-in", format("missed, contact at t = %.17g", truth_.time));
+    if (truth_.hit && toc > truth_.time) add("drop-in", format("late: %.17g, contact at t = %.17g", toc, truth_.time));
     if (!d.is_collide) return;
     const Truth after = judge_.firstContact(toc, std::min(1.0, toc + toc_err + 1e-12));
     if (!after.hit && after.gap > fcl_artic::CertifiedPairRequest().tolerance_distance)
-      add(Fault::drop_in, format("contact at t = %.17g, gap %.3g m for toc_err from there on", toc, after.gap));
+      add("drop-in", format("contact at t = %.17g, gap %.3g m for toc_err from there on", toc, after.gap));
   }
 
   const PairQuery& query_;
@@ -220,45 +200,6 @@ class Examination {
   const CertifiedPairResult& result_;
   std::vector<Finding> findings_;
 };
-
-void runOne(const Family& family, std::uint64_t seed, const Options& options, Tally& tally,
-            std::vector<Finding>& findings) {
-  const PairQuery query = makeQuery(family, seed);
-  const Judge judge(query, exactLook(query));
-  const Truth truth = judge.firstContact();
-  ++tally.queries;
-  tally.hits += truth.hit;
-  tally.starts += truth.hit && truth.time == 0;
-  tally.between += truth.hit && truth.time > 0 && judge.at(1, 0.5).gap > 0;
-  tally.grazes += !truth.hit && truth.gap <= 1e-3;
-  try {
-    const Answer answer = ask(query);
-    for (int c = 0; options.try_corruptions && c < kCorruptions; ++c) {
-      Answer spoilt = answer;
-      if (!corrupt(static_cast<Corruption>(c), query, spoilt)) continue;
-      ++tally.spoilt[static_cast<std::size_t>(c)];
-      tally.spoilt_seen[static_cast<std::size_t>(c)] += !examine(query, judge, truth, spoilt).empty();
-    }
-    findings = examine(query, judge, truth, answer);
-    const CertifiedPairResult& r = answer.result;
-    tally.certain += r.status == Status::contact && r.certain;
-    tally.uncertain += r.status == Status::contact && !r.certain;
-    tally.beyond_sampling += r.certain && !truth.hit;
-    (r.status == Status::free ? tally.free_us : tally.hit_us).push_back(static_cast<float>(answer.elapsed_us));
-    if (r.certain && truth.hit) tally.lead.push_back(static_cast<float>(truth.time - r.t_lower));
-  } catch (const std::exception& e) {
-    findings.push_back({Fault::fields, std::string("threw: ") + e.what()});
-  }
-  bool seen[kFaults] = {};
-  for (const Finding& f : findings) seen[static_cast<int>(f.fault)] = true;
-  for (int f = 0; f < kFaults; ++f) tally.faults[static_cast<std::size_t>(f)] += seen[f];
-}
-
-double quantile(std::vector<float> v, double p) {
-  if (v.empty()) return 0;
-  std::sort(v.begin(), v.end());
-  return static_cast<double>(v[std::min(v.size() - 1, static_cast<std::size_t>(p * static_cast<double>(v.size())))]);
-}
 
 /// Where the first query of a class stands among kShares.
 int firstShare(const Family& family) {
@@ -280,18 +221,6 @@ const Family& familyAt(std::uint64_t index) {
 
 }  // namespace
 
-const char* faultName(Fault fault) {
-  static constexpr const char* kNames[] = {"missed", "late",   "false",   "unproven", "wide",    "undecided", "fields",
-                                           "point",  "normal", "witness", "poses",    "swapped", "drop-in"};
-  return kNames[static_cast<int>(fault)];
-}
-
-const char* corruptionName(Corruption corruption) {
-  static constexpr const char* kNames[] = {"late",    "drop",  "invent",  "widen", "point",   "normal",
-                                           "witness", "poses", "certain", "ids",   "swapped", "drop-in"};
-  return kNames[static_cast<int>(corruption)];
-}
-
 const std::vector<Family>& families() {
   using pairs::Bodies;
   static const std::vector<Family> all = {
@@ -312,6 +241,12 @@ const std::vector<Family>& families() {
       {"mesh-shape/bounded", Bodies::mixed, "bounded", 1},
   };
   return all;
+}
+
+const Family& familyOf(const std::string& name) {
+  for (const Family& f : families())
+    if (f.name == name) return f;
+  throw std::invalid_argument("no class of queries is named '" + name + "'");
 }
 
 PairQuery makeQuery(const Family& family, std::uint64_t seed) {
@@ -371,201 +306,188 @@ std::vector<Finding> examine(const PairQuery& query, const Judge& judge, const T
   return Examination(query, judge, truth, answer).run();
 }
 
-bool corrupt(Corruption corruption, const PairQuery& query, Answer& answer) {
-  CertifiedPairResult& r = answer.result;
+namespace {
+
+bool hits(const Answer& answer) {
+  return answer.result.status == Status::contact && !answer.result.contacts.empty();
+}
+bool provenHit(const Answer& answer) {
+  return hits(answer) && answer.result.certain;
+}
+
+/// Another bracket, with the poses at its ends.
+void moveTo(double lower, double upper, const PairQuery& query, CertifiedPairResult& r) {
+  r.t_lower = lower, r.t_upper = upper;
+  for (CertifiedContact& c : r.contacts) c.t_lower = lower, c.t_upper = upper;
+  const auto pose = [](const pairs::PathPtr& path, double t) {
+    const auto M = path->pose(t).cast<double>();
+    Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+    out.linear() = M.rotation, out.translation() = M.position;
+    return out;
+  };
+  r.tf1_at_lower = pose(query.path1, lower), r.tf2_at_lower = pose(query.path2, lower);
+  r.tf1_at_upper = pose(query.path1, upper), r.tf2_at_upper = pose(query.path2, upper);
+}
+
+Vec3 fiveMillimetres(const PairQuery& query) {
   Random random(query.seed ^ 0xbad);
-  const bool hit = r.status == Status::contact && !r.contacts.empty();
-  const auto moveTo = [&](double lower, double upper) {
-    r.t_lower = lower, r.t_upper = upper;
-    for (CertifiedContact& c : r.contacts) c.t_lower = lower, c.t_upper = upper;
-    const auto pose = [](const pairs::PathPtr& path, double t) {
-      const auto M = path->pose(t).cast<double>();
-      Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
-      out.linear() = M.rotation, out.translation() = M.position;
-      return out;
-    };
-    r.tf1_at_lower = pose(query.path1, lower), r.tf2_at_lower = pose(query.path2, lower);
-    r.tf1_at_upper = pose(query.path1, upper), r.tf2_at_upper = pose(query.path2, upper);
-  };
-  switch (corruption) {
-    case Corruption::late: {
-      if (!hit || !r.certain) return false;
-      const double by = std::max(1e-5, 2 * (r.t_upper - r.t_lower));
-      moveTo(std::min(1.0, r.t_lower + by), std::min(1.0, r.t_upper + by));
-      return r.t_lower < 1;
-    }
-    case Corruption::drop:
-      if (!hit || !r.certain) return false;
-      r.contacts.clear();
-      r.status = Status::free;
-      r.certain = false;
-      moveTo(1, 1);
-      answer.swapped = r;  // both ways round, so that only the oracle can tell
-      return true;
-    case Corruption::invent: {
-      if (r.status != Status::free) return false;
-      r.status = Status::contact;
-      CertifiedContact c;
-      c.o1 = query.body1->geometry.get(), c.o2 = query.body2->geometry.get();
-      if (query.body1->kind == pairs::Kind::mesh) c.b1 = 0;
-      if (query.body2->kind == pairs::Kind::mesh) c.b2 = 0;
-      r.contacts = {c};
-      moveTo(0.5, 0.5 + answer.request.tolerance_time);
-      return true;
-    }
-    case Corruption::widen:
-      if (!hit || !r.certain || r.t_lower < 0.02) return false;
-      moveTo(r.t_lower - 0.02, r.t_upper);
-      return true;
-    case Corruption::point:
-      if (hit) r.contacts[0].point += 5e-3 * random.direction();
-      return hit;
-    case Corruption::normal:
-      if (hit) r.contacts[0].normal *= -1;
-      return hit && r.t_lower > 0;
-    case Corruption::witness:
-      if (hit) r.contacts[0].nearest2 += 5e-3 * random.direction();
-      return hit && r.t_lower > 0;
-    case Corruption::poses:
-      r.tf2_at_upper.translation().x() += 1e-9;
-      return true;
-    case Corruption::certain:  // claims a proof somewhat before the contact
-      if (!hit || r.t_lower < 2e-3) return false;
-      r.certain = true;
-      for (CertifiedContact& c : r.contacts) c.certain = true;
-      moveTo(r.t_lower - 1e-3, r.t_lower - 1e-3);
-      return true;
-    case Corruption::ids:
-      if (hit) r.contacts[0].b1 += 100000;
-      return hit;
-    case Corruption::swapped:
-      if (!hit || !r.certain) return false;
-      answer.swapped = {};
-      answer.swapped.status = Status::free;
-      return true;
-    case Corruption::drop_in:
-      answer.drop_in.time_of_contact = answer.drop_in_time = std::min(1.0, 0.99 * answer.drop_in_time + 0.02);
-      return answer.drop_in.is_collide && answer.drop_in_time < 1;
-    case Corruption::count:
-      break;
-  }
-  return false;
+  return 5e-3 * random.direction();
 }
 
-std::uint64_t Tally::faulty() const {
-  std::uint64_t n = 0;
-  for (const std::uint64_t f : faults) n += f;
-  return n;
+bool late(const PairQuery& query, Answer& answer) {
+  CertifiedPairResult& r = answer.result;
+  if (!provenHit(answer)) return false;
+  const double by = std::max(1e-5, 2 * (r.t_upper - r.t_lower));
+  moveTo(std::min(1.0, r.t_lower + by), std::min(1.0, r.t_upper + by), query, r);
+  return r.t_lower < 1;
 }
 
-void Tally::add(const Tally& o) {
-  queries += o.queries, hits += o.hits, starts += o.starts, between += o.between, grazes += o.grazes;
-  certain += o.certain, uncertain += o.uncertain, beyond_sampling += o.beyond_sampling;
-  for (std::size_t f = 0; f < faults.size(); ++f) faults[f] += o.faults[f];
-  for (std::size_t c = 0; c < spoilt.size(); ++c) spoilt[c] += o.spoilt[c], spoilt_seen[c] += o.spoilt_seen[c];
-  free_us.insert(free_us.end(), o.free_us.begin(), o.free_us.end());
-  hit_us.insert(hit_us.end(), o.hit_us.begin(), o.hit_us.end());
-  lead.insert(lead.end(), o.lead.begin(), o.lead.end());
+/// Both ways round, so that only the oracle can tell.
+bool drop(const PairQuery& query, Answer& answer) {
+  CertifiedPairResult& r = answer.result;
+  if (!provenHit(answer)) return false;
+  r.contacts.clear();
+  r.status = Status::free;
+  r.certain = false;
+  moveTo(1, 1, query, r);
+  answer.swapped = r;
+  return true;
 }
 
-Report run(const Options& options) {
-  const Family* only = options.family.empty() ? nullptr : &familyOf(options.family);
-  Report report;
-  std::mutex mutex;
-  std::atomic<std::uint64_t> next{0};
-  std::vector<std::pair<std::uint64_t, Failure>> failures;
-  const auto work = [&] {
-    std::map<std::string, Tally> tallies;
-    for (std::uint64_t i; (i = next++) < options.queries;) {
-      const Family& family = only ? *only : familyAt(i);
-      const std::uint64_t seed = Random::mix(options.seed, i);
-      std::vector<Finding> findings;
-      runOne(family, seed, options, tallies[family.name], findings);
-      if (findings.empty()) continue;
-      const std::lock_guard<std::mutex> lock(mutex);
-      failures.push_back({i, {family.name, seed, std::move(findings)}});
-    }
-    const std::lock_guard<std::mutex> lock(mutex);
-    for (const auto& [name, tally] : tallies) report.families[name].add(tally);
-  };
-  const auto begin = Clock::now();
-  std::vector<std::thread> threads;
-  for (int t = 0; t < std::max(1, options.threads); ++t) threads.emplace_back(work);
-  for (std::thread& t : threads) t.join();
-  report.elapsed_s = std::chrono::duration<double>(Clock::now() - begin).count();
-  for (const auto& [name, tally] : report.families) report.total.add(tally);
-  std::sort(failures.begin(), failures.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (auto& [index, failure] : failures) report.failures.push_back(std::move(failure));
-  return report;
+bool invent(const PairQuery& query, Answer& answer) {
+  CertifiedPairResult& r = answer.result;
+  if (r.status != Status::free) return false;
+  r.status = Status::contact;
+  CertifiedContact c;
+  c.o1 = query.body1->geometry.get(), c.o2 = query.body2->geometry.get();
+  if (query.body1->kind == pairs::Kind::mesh) c.b1 = 0;
+  if (query.body2->kind == pairs::Kind::mesh) c.b2 = 0;
+  r.contacts = {c};
+  moveTo(0.5, 0.5 + answer.request.tolerance_time, query, r);
+  return true;
 }
 
-std::string toText(const Report& report) {
-  std::string out =
-      format("%-24s %7s %6s %6s %8s %6s %8s %9s %6s | %9s %9s | %s\n", "class", "queries", "hits%", "start%",
-             "between%", "graze%", "certain", "uncertain", "beyond", "free us", "hit us", "faults");
-  const auto row = [&](const std::string& name, const Tally& t) {
-    const double n = std::max<double>(1, static_cast<double>(t.queries));
-    const auto share = [&](std::uint64_t k) { return 100 * static_cast<double>(k) / n; };
-    const auto number = [](std::uint64_t k) { return static_cast<unsigned long long>(k); };
-    out +=
-        format("%-24s %7llu %6.1f %6.1f %8.1f %6.1f %8llu %9llu %6llu | %9.1f %9.1f | ", name.c_str(),
-               number(t.queries), share(t.hits), share(t.starts), share(t.between), share(t.grazes), number(t.certain),
-               number(t.uncertain), number(t.beyond_sampling), quantile(t.free_us, 0.5), quantile(t.hit_us, 0.5));
-    for (int f = 0; f < kFaults; ++f) {
-      const std::uint64_t k = t.faults[static_cast<std::size_t>(f)];
-      if (k) out += format("%s %llu ", faultName(static_cast<Fault>(f)), number(k));
-    }
-    out += t.faulty() ? "\n" : "none\n";
-  };
-  for (const auto& [name, tally] : report.families) row(name, tally);
-  row("all", report.total);
-  out += format("sampled contact - t_lower (certain hits): least %.3g, median %.3g, p95 %.3g; %.1f s\n",
-                quantile(report.total.lead, 0), quantile(report.total.lead, 0.5), quantile(report.total.lead, 0.95),
-                report.elapsed_s);
-  for (std::size_t c = 0; c < report.total.spoilt.size(); ++c) {
-    if (report.total.spoilt[c] == 0) continue;
-    out += format("spoilt on purpose, %s: %llu, of these seen %llu\n", corruptionName(static_cast<Corruption>(c)),
-                  static_cast<unsigned long long>(report.total.spoilt[c]),
-                  static_cast<unsigned long long>(report.total.spoilt_seen[c]));
-  }
-  // The first few of each kind, as one kind can be much more frequent than a worse one.
-  std::array<int, kFaults> shown{};
-  for (const Failure& f : report.failures) {
-    for (const Finding& finding : f.findings) {
-      if (++shown[static_cast<std::size_t>(finding.fault)] > 6) continue;
-      out += format("--class %s --replay %llu: %s: ", f.family.c_str(), static_cast<unsigned long long>(f.seed),
-                    faultName(finding.fault)) +
-             finding.text + "\n";
-    }
-  }
-  return out;
+bool widen(const PairQuery& query, Answer& answer) {
+  CertifiedPairResult& r = answer.result;
+  if (!provenHit(answer) || r.t_lower < 0.02) return false;
+  moveTo(r.t_lower - 0.02, r.t_upper, query, r);
+  return true;
 }
 
-bool replay(const std::string& family, std::uint64_t seed, std::string& words) {
-  const PairQuery query = makeQuery(familyOf(family), seed);
-  const Judge judge(query, exactLook(query));
-  const Truth truth = judge.firstContact();
-  words = pairs::describe(query) + "\n" +
-          format("oracle: %s t %.17g gap %.6g at %.17g\n", truth.hit ? "hit" : "free", truth.time, truth.gap,
-                 truth.gap_time);
-  const Answer answer = ask(query);
-  const auto line = [&](const char* name, const CertifiedPairResult& r) {
+bool movePoint(const PairQuery& query, Answer& answer) {
+  if (hits(answer)) answer.result.contacts[0].point += fiveMillimetres(query);
+  return hits(answer);
+}
+
+bool turnNormal(const PairQuery&, Answer& answer) {
+  if (hits(answer)) answer.result.contacts[0].normal *= -1;
+  return hits(answer) && answer.result.t_lower > 0;
+}
+
+bool moveWitness(const PairQuery& query, Answer& answer) {
+  if (hits(answer)) answer.result.contacts[0].nearest2 += fiveMillimetres(query);
+  return hits(answer) && answer.result.t_lower > 0;
+}
+
+bool movePose(const PairQuery&, Answer& answer) {
+  answer.result.tf2_at_upper.translation().x() += 1e-9;
+  return true;
+}
+
+/// Claims a proof somewhat before the contact.
+bool claimCertain(const PairQuery& query, Answer& answer) {
+  CertifiedPairResult& r = answer.result;
+  if (!hits(answer) || r.t_lower < 2e-3) return false;
+  r.certain = true;
+  for (CertifiedContact& c : r.contacts) c.certain = true;
+  moveTo(r.t_lower - 1e-3, r.t_lower - 1e-3, query, r);
+  return true;
+}
+
+bool renumber(const PairQuery&, Answer& answer) {
+  if (hits(answer)) answer.result.contacts[0].b1 += 100000;
+  return hits(answer);
+}
+
+bool freeTheOtherWayRound(const PairQuery&, Answer& answer) {
+  if (!provenHit(answer)) return false;
+  answer.swapped = {};
+  answer.swapped.status = Status::free;
+  return true;
+}
+
+bool delayDropIn(const PairQuery&, Answer& answer) {
+  answer.drop_in.time_of_contact = answer.drop_in_time = std::min(1.0, 0.99 * answer.drop_in_time + 0.02);
+  return answer.drop_in.is_collide && answer.drop_in_time < 1;
+}
+
+std::string describe(const PairQuery& query, const Truth& truth, const Answer& answer) {
+  std::string words =
+      pairs::describe(query) + "\n" +
+      format("oracle: %s t %.17g gap %.6g at %.17g\n", truth.hit ? "hit" : "free", truth.time, truth.gap,
+             truth.gap_time) +
+      format("tolerances %.3g, %.3g m\n", answer.request.tolerance_time, answer.request.tolerance_distance);
+  for (const CertifiedPairResult* r : {&answer.result, &answer.swapped}) {
     static constexpr const char* kStatus[] = {"free", "contact", "undecided"};
-    words += format("%s: %s [%.17g, %.17g]%s\n", name, kStatus[static_cast<int>(r.status)], r.t_lower, r.t_upper,
-                    r.certain ? " certain" : "");
-    for (const CertifiedContact& c : r.contacts) {
+    words += format("%s: %s [%.17g, %.17g]%s\n", r == &answer.result ? "answer" : "swapped",
+                    kStatus[static_cast<int>(r->status)], r->t_lower, r->t_upper, r->certain ? " certain" : "");
+    for (const CertifiedContact& c : r->contacts) {
       words += format("  %ld %ld point %.9g %.9g %.9g normal %.9g %.9g %.9g\n", static_cast<long>(c.b1),
                       static_cast<long>(c.b2), c.point.x(), c.point.y(), c.point.z(), c.normal.x(), c.normal.y(),
                       c.normal.z());
     }
-  };
-  words += format("tolerances %.3g, %.3g m\n", answer.request.tolerance_time, answer.request.tolerance_distance);
-  line("answer", answer.result);
-  line("swapped", answer.swapped);
-  words += format("drop-in: %d at %.17g\n", answer.drop_in.is_collide, answer.drop_in.time_of_contact);
-  const std::vector<Finding> findings = examine(query, judge, truth, answer);
-  for (const Finding& f : findings) words += std::string("FAULT ") + faultName(f.fault) + ": " + f.text + "\n";
-  return findings.empty();
+  }
+  return words + format("drop-in: %d at %.17g\n", answer.drop_in.is_collide, answer.drop_in.time_of_contact);
+}
+
+void look(Case& c) {
+  const PairQuery query = makeQuery(familyOf(c.id.family), c.id.seed);
+  const Judge judge(query, exactLook(query));
+  const Truth truth = judge.firstContact();
+  c.tally.count("hits", truth.hit);
+  c.tally.count("starts", truth.hit && truth.time == 0);
+  c.tally.count("between", truth.hit && truth.time > 0 && judge.at(1, 0.5).gap > 0);  // two free ends
+  c.tally.count("grazes", !truth.hit && truth.gap <= 1e-3);
+  const Answer answer = ask(query);
+  if (c.words) *c.words += describe(query, truth, answer);
+  const auto findings = [&](const Answer& one) { return examine(query, judge, truth, one); };
+  campaign::tryMutants(mutants(), query, answer, findings, c);
+  c.findings = findings(answer);
+  const CertifiedPairResult& r = answer.result;
+  c.tally.count("certain", r.status == Status::contact && r.certain);
+  c.tally.count("uncertain", r.status == Status::contact && !r.certain);
+  c.tally.count("beyond", r.certain && !truth.hit);  // the samples did not find it
+  c.tally.note(r.status == Status::free ? "free, us" : "hit, us", answer.elapsed_us);
+  if (r.certain && truth.hit) c.tally.note("sampled contact - t_lower (certain hits)", truth.time - r.t_lower);
+}
+
+}  // namespace
+
+const std::vector<Mutant<PairQuery, Answer>>& mutants() {
+  // A moved point can stay inside a solid, and what turns about a tip or comes a little early may still fit.
+  static const std::vector<Mutant<PairQuery, Answer>> all = {{"late", 0.97, late},
+                                                             {"drop", 0.97, drop},
+                                                             {"invent", 0.97, invent},
+                                                             {"widen", 0.97, widen},
+                                                             {"point", 0.75, movePoint},
+                                                             {"normal", 0.75, turnNormal},
+                                                             {"witness", 0.97, moveWitness},
+                                                             {"poses", 0.97, movePose},
+                                                             {"certain", 0.97, claimCertain},
+                                                             {"ids", 0.97, renumber},
+                                                             {"swapped", 0.97, freeTheOtherWayRound},
+                                                             {"drop-in", 0.97, delayDropIn}};
+  return all;
+}
+
+campaign::Campaign campaignOfPairs() {
+  std::vector<std::string> names;
+  for (const Family& family : families()) names.push_back(family.name);
+  return {names,
+          [](std::uint64_t seed, std::uint64_t index) {
+            return campaign::CaseId{familyAt(index).name, Random::mix(seed, index)};
+          },
+          look};
 }
 
 }  // namespace pair_campaign

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "arm.h"
-#include "plans/variables.h"
+#include "kinematics/angles.h"
 
 namespace logs_test {
 
@@ -97,7 +97,7 @@ TEST(PlanLogsTest, ColumnsMayBeSaid) {
   all.columns.pop_back();
   expectContains(refusedWith(tree, log, all), "line 1 has 4 columns, --columns names 3");
   all.columns = {"time", "hinge", "hinge", "-"};
-  expectContains(refusedWith(tree, log, all), "two columns are joint 'hinge'");
+  expectContains(refusedWith(tree, log, all), "line 1: two columns are 'hinge', 1 and 2");
   all.columns = {"time", "hing", "rail", "-"};
   expectContains(refusedWith(tree, log, all), "did you mean 'hinge'");
 }
@@ -117,6 +117,16 @@ TEST(PlanLogsTest, NoRowAndNoNameIsLost) {
   }
   EXPECT_EQ(read(tree, "# 2 columns\n0.25,0\n1,0.5\n").waypoints[1], Eigen::Vector2d(1, 0.5));
   expectContains(refusedWith(tree, "# rail elbow\n0.25,0\n1,0.5\n"), "no joint 'elbow'");
+}
+
+// Of two columns that say the same, nobody knows which one counts.
+TEST(PlanLogsTest, AQuantityOfAJointHasOneColumn) {
+  const KinematicTree tree = armTree();
+  const std::string rows = "0 0 0 0 0 5\n1 0.25 0 0 0 5\n";
+  expectContains(refusedWith(tree, "time hinge rail hinge/velocity rail/velocity hinge_vel\n" + rows),
+                 "line 1: two columns are 'hinge/velocity', 3 and 5");
+  expectContains(refusedWith(tree, "time hinge rail rail_acc hinge_acc rail.acceleration\n" + rows),
+                 "line 1: two columns are 'rail/acceleration', 3 and 5");
 }
 
 // A hand whose rail stays, given once for all logs.

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <ctime>
 #include <random>
 
 #include "arm.h"
@@ -131,6 +132,18 @@ TEST(PlanReadersTest, EveryFormatSaysTheSame) {
   EXPECT_EQ(lines[0].name, "line 1 p");
   EXPECT_EQ(lines[1].name, "line 3");
   for (const Plan& plan : lines) expectThePlan(toMotion(tree, plan, {}), plan.name);
+}
+
+// A comment is of all plans of a file, and looked at once. (With the square of the documents, these take 20 s.)
+TEST(PlanReadersTest, TimeToReadGrowsWithTheFile) {
+  constexpr int kPlans = 8000;
+  std::string documents;
+  for (int k = 0; k < kPlans; ++k) documents += "---\n# in degrees\nwaypoints: [[0, 0], [1, 0.5]]\n";
+  const std::clock_t begin = std::clock();
+  const std::vector<Plan> plans = parsePlans(armTree(), documents, Format::yaml);
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 3);
+  ASSERT_EQ(plans.size(), std::size_t{kPlans});
+  EXPECT_EQ(plans.back().other_angles, "line 2 says '# in degrees'");
 }
 
 TEST(PlanReadersTest, YamlAsRosPrintsIt) {

@@ -2,7 +2,6 @@
 // Every combination of the paper's ideas gives the same answers, also with modes, budgets, and pairs that are left to
 // the standard method. More scenes: FCL_ARTIC_REDON_SWITCHES.
 #include <algorithm>
-#include <cstdlib>
 #include <iostream>
 #include <vector>
 
@@ -10,6 +9,7 @@
 
 #include "engine.h"
 #include "generator.h"
+#include "harness.h"
 
 namespace switches_test {
 
@@ -23,8 +23,7 @@ using fcl_artic::Status;
 
 /// Number of scenes of each family.
 std::uint64_t scenes() {
-  const char* wanted = std::getenv("FCL_ARTIC_REDON_SWITCHES");
-  return wanted ? std::strtoull(wanted, nullptr, 10) : 3;
+  return campaign::fromEnvironment("FCL_ARTIC_REDON_SWITCHES", 3);
 }
 
 /// Each scene is asked with every so many-th combination: all scenes together with all.
@@ -60,13 +59,8 @@ TEST(Switches, AllCombinationsAgreeInAllModesAndWithinBudgets) {
       for (std::size_t v = 0; v < scene.q1.size(); ++v) scene.q1[v] = scene.q0[v] + 0.15 * (scene.q1[v] - scene.q0[v]);
       scene.margin = 0;
       scene.every_pair = false;
-      campaign::Question question = campaign::prepare(scene);
-      const fcl_artic::JointMotion motion = campaign::motionOf(scene, *question.tree);
-      const auto ask = [&](const CertifiedRequest& request) {
-        CertifiedResult result;
-        question.manager->continuousCollide(motion, request, result);
-        return result;
-      };
+      const campaign::Question question = campaign::prepare(scene);
+      const auto ask = [&](const CertifiedRequest& request) { return campaign::ask(question, request).result; };
       const CertifiedResult standard = ask(question.request);
       const double first = standard.isFree() ? 1 : standard.t_upper;
       ++(standard.status == Status::contact ? contacts : free);

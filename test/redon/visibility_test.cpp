@@ -9,8 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "../visibility/recorder.h"
-#include "engine.h"
-#include "generator.h"
+#include "../visibility/with_and_without.h"
 #include "redon/parts.h"
 
 namespace visibility_test {
@@ -163,48 +162,28 @@ TEST(RedonVisibility, PartsOfTimeAreThoseThatOverlap) {
 
 /// FCL_ARTIC_REDON_QUERIES=10000 in the environment makes it a campaign.
 TEST(RedonVisibility, SameAnswersWithTheStageAndWithout) {
-  const char* wanted = std::getenv("FCL_ARTIC_REDON_QUERIES");
-  const std::uint64_t n = wanted ? std::strtoull(wanted, nullptr, 10) : 240;
-  std::uint64_t contacts = 0, pairs = 0, culled = 0, cut = 0, both = 0;
-  for (std::uint64_t i = 0; i < n; ++i) {
-    const std::uint64_t seed = 1000003 * 11 + i;
-    const std::string& family = campaign::familyOf(11, i);
-    campaign::Scene scene = campaign::makeScene(family, seed);
-    scene.margin = 0;
-    campaign::Question question = campaign::prepare(scene);
-    const JointMotion motion = campaign::motionOf(scene, *question.tree);
-    question.request.method = Method::redon2004;
-    question.request.redon.in_time_order = i % 4 != 0;
-    CertifiedResult off, on;
-    question.manager->continuousCollide(motion, question.request, off);
-    contacts += off.status == Status::contact;
-    for (const VisibilityMode mode : {VisibilityMode::on, VisibilityMode::automatic}) {
-      question.request.visibility = mode;
-      question.manager->continuousCollide(motion, question.request, on);
-      ASSERT_EQ(on.status, off.status) << family << " " << seed;
-      EXPECT_EQ(on.t_lower, off.t_lower) << family << " " << seed;
-      EXPECT_EQ(on.t_upper, off.t_upper) << family << " " << seed;
-      ASSERT_EQ(on.contacts.size(), off.contacts.size()) << family << " " << seed;
-      for (std::size_t k = 0; k < on.contacts.size(); ++k) {
-        EXPECT_EQ(on.contacts[k].body1.name, off.contacts[k].body1.name) << family << " " << seed;
-        EXPECT_EQ(on.contacts[k].body2.name, off.contacts[k].body2.name) << family << " " << seed;
-        EXPECT_EQ(on.contacts[k].point, off.contacts[k].point) << family << " " << seed;
-        EXPECT_EQ(on.contacts[k].t_lower, off.contacts[k].t_lower) << family << " " << seed;
-      }
-      if (mode != VisibilityMode::on) continue;
-      pairs += on.statistics.visibility.pairs;
-      culled += on.statistics.visibility.culled;
-      cut += on.statistics.redon.box_tests < off.statistics.redon.box_tests;
-      EXPECT_EQ(on.statistics.redon.pairs_by_standard, off.statistics.redon.pairs_by_standard);
-      if (on.statistics.visibility.repeated) both += on.statistics.redon.box_tests > off.statistics.redon.box_tests;
-    }
-  }
-  std::cout << n << " queries, " << contacts << " with contact, " << pairs << " pairs seen, " << culled << " culled; "
-            << cut << " queries with fewer tests of boxes, " << both << " solved twice with more\n";
-  EXPECT_GT(contacts, n / 10);
-  EXPECT_GT(culled, n / 10);
-  EXPECT_GT(cut, n / 50);
-  EXPECT_GT(both, n / 50);
+  campaign::Arms arms = test::withAndWithoutStage();
+  arms.draw = [without_margin = campaign::drawAnd([](campaign::Scene& scene) { scene.margin = 0; })](
+                  campaign::Asked& asked, campaign::Case& c) {
+    without_margin(asked, c);
+    asked.question.request.method = Method::redon2004;
+    asked.question.request.redon.in_time_order = c.index % 4 != 0;
+  };
+  arms.judges.push_back([](const campaign::Asked& asked, campaign::Case& c) {
+    const auto &off = asked.result(0).statistics, &on = asked.result(1).statistics;
+    if (on.redon.pairs_by_standard != off.redon.pairs_by_standard) c.fault("pairs", "others by the standard method");
+    c.tally.count("fewer tests of boxes", on.redon.box_tests < off.redon.box_tests);
+    c.tally.count("solved twice with more", on.visibility.repeated && on.redon.box_tests > off.redon.box_tests);
+  });
+  campaign::Options o;
+  o.cases = campaign::fromEnvironment("FCL_ARTIC_REDON_QUERIES", 240);
+  o.seed = 11;
+  o.threads = 1;
+  const campaign::Tally all = runWithoutFaults(campaignOf(arms), o).total;
+  EXPECT_GT(all["contact"], o.cases / 10);
+  EXPECT_GT(all["culled"], o.cases / 10);
+  EXPECT_GT(all["fewer tests of boxes"], o.cases / 50);
+  EXPECT_GT(all["solved twice with more"], o.cases / 50);
 }
 
 }  // namespace

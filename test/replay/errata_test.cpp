@@ -61,6 +61,8 @@ const Case kCases[] = {
      "An allowed pair nearer than its own margin was not counted",
      {Status::free, -1, 0, 0, 0, 2}},
     {"trajectory_of_today", "`t_upper - t_lower <= tolerance_time`", {Status::contact, 1700000807.8003822, 1}},
+    {"any_ends_before_the_contact", "A `certain` contact after the motion's end", {Status::free}},
+    {"near_miss", "Near misses with `tolerance_distance` of 1e-12", {Status::free}},
     {"solid_around_a_body", "A solid within a closed mesh is `free`", {Status::contact, 0, 1}},
 };
 

@@ -195,7 +195,9 @@ inline World world(std::uint64_t seed) {
   }
   const int obstacles = 2 + chance.below(3);
   for (int i = 0; i < obstacles; ++i) {
-    const auto shape = i == 0 ? shared : geometry(chance.below(kKinds), chance);
+    const int kind =
+        chance.below(4) == 0 ? kBoundedKinds + chance.below(kKinds - kBoundedKinds) : chance.below(kBoundedKinds);
+    const auto shape = i == 0 ? shared : geometry(kind, chance);
     manager.registerObject(object(shape, chance.pose(1)), "obstacle with a name " + std::to_string(i));
   }
   const KinematicTree arm = smallArm();
@@ -213,6 +215,11 @@ inline World world(std::uint64_t seed) {
   if (chance.coin()) manager.allow("link0", "link2");
   if (chance.coin()) manager.allow("link1", "obstacle with a name 0");
   if (chance.coin()) manager.disallow("link0", "link1");
+  if (chance.below(4) == 0) {
+    AllowedCollisionMatrix all = manager.allowedCollisions();
+    all.setComplete();
+    manager.setAllowedCollisions(all);
+  }
   if (chance.coin()) manager.setMargin("link2", 0.01);
   if (chance.coin()) manager.setMargin("link2", "link4", 0.002);
   manager.setup();

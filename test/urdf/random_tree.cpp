@@ -83,6 +83,19 @@ Eigen::Quaterniond slerp(const double* from, const double* to, double t) {
   return a.normalized().slerp(t, b.normalized());
 }
 
+bool hasOneValue(JointType type) {
+  return type == JointType::revolute || type == JointType::continuous || type == JointType::prismatic;
+}
+
+template <class T>
+void shuffle(pairs::Random& random, std::vector<T>& items) {
+  for (std::size_t i = items.size(); i > 1; --i) {
+    std::swap(items[i - 1], items[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
+  }
+}
+
+}  // namespace
+
 const char* typeName(JointType type) {
   switch (type) {
     case JointType::fixed:
@@ -99,19 +112,6 @@ const char* typeName(JointType type) {
       return "floating";
   }
 }
-
-bool hasOneValue(JointType type) {
-  return type == JointType::revolute || type == JointType::continuous || type == JointType::prismatic;
-}
-
-template <class T>
-void shuffle(pairs::Random& random, std::vector<T>& items) {
-  for (std::size_t i = items.size(); i > 1; --i) {
-    std::swap(items[i - 1], items[static_cast<std::size_t>(random.below(static_cast<int>(i)))]);
-  }
-}
-
-}  // namespace
 
 void writeMeshes(const std::string& folder) {
   for (const MeshData& mesh : meshes()) {

@@ -52,6 +52,8 @@ struct JointWay {
   std::vector<double> from, to;
 };
 
+const char* typeName(fcl_artic::JointType type);  ///< as URDF has it
+
 class RandomTree {
  public:
   /// @param folder  with the meshes that writeMeshes() writes.

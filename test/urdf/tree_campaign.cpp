@@ -4,14 +4,11 @@
 #include <stdlib.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <mutex>
-#include <sstream>
+#include <memory>
 #include <stdexcept>
-#include <thread>
 
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
@@ -25,7 +22,6 @@ namespace {
 using namespace fcl_artic;
 
 constexpr int kSamples = 256;
-constexpr std::size_t kMostFaults = 20;
 
 /// A folder of this run's own, with the meshes.
 class Folder {
@@ -68,9 +64,9 @@ bool touch(const Shape& a, const Isometry3d& M_a, const Shape& b, const Isometry
 }
 
 /// One tree on one motion, among obstacles.
-class Case {
+class TreeCase {
  public:
-  Case(std::uint64_t seed, const std::string& folder)
+  TreeCase(std::uint64_t seed, const std::string& folder)
       : random_(seed), folder_(folder), tree_(random_, folder), way_(tree_.way(random_, reach())) {
     for (std::size_t i = 0; i < tree_.links().size(); ++i) {
       for (const Shape& shape : tree_.links()[i].shapes) bodies_.push_back({static_cast<int>(i), &shape});
@@ -125,10 +121,11 @@ class Case {
   /// Neighbours of which the manager says that it can't decide are not watched, nor, of those that it says touch
   /// throughout, the shapes that touch throughout this motion: there are to be some.
   /// @return what contradicts the rule; empty: nothing.
-  std::string leaveOut(const std::vector<LinkPairFinding>& neighbours, const CertifiedResult& result, long* left_out) {
+  std::string leaveOut(const std::vector<LinkPairFinding>& neighbours, const CertifiedResult& result,
+                       campaign::Tally& tally) {
     for (const LinkPairFinding& found : neighbours) {
       if (!found.leftOut()) continue;
-      ++*left_out;
+      tally.count("left out");
       const auto& said = result.unproven_neighbours;
       const std::pair<std::string, std::string> names(found.link1, found.link2);
       if (found.undecided() && (!said || std::find(said->begin(), said->end(), names) == said->end())) {
@@ -153,20 +150,20 @@ class Case {
   }
 
   /// A sampled time before `end` at which something touches; -1: none.
-  double touchesBefore(double end, bool all, long* samples) const {
+  double touchesBefore(double end, bool all, std::uint64_t& samples) const {
     std::vector<double> times;
     for (int s = 0; s <= kSamples; ++s) times.push_back(static_cast<double>(s) / kSamples);
     for (int k = 4; k <= 20; ++k) times.push_back(end - std::ldexp(1, -k));  // an answer may be a little late
     for (const double t : times) {
       if (t < 0 || !(all || t < end)) continue;
-      ++*samples;
+      ++samples;
       if (touches(t, Size::smaller)) return t;
     }
     return -1;
   }
 
   const RandomTree& tree() const { return tree_; }
-  long numWatched() const { return static_cast<long>(watched_.size()); }
+  std::size_t numWatched() const { return watched_.size(); }
 
  private:
   bool areOf(const std::pair<std::size_t, std::size_t>& shapes, const LinkPairFinding& found) const {
@@ -249,122 +246,68 @@ const std::string& touchingLink(const CertifiedContact& contact) {
   return contact.body2.link >= 0 ? contact.body2.name : contact.body1.name;
 }
 
-void judge(const Options& options, int number, const std::string& folder, Report& report) {
-  Case c(pairs::Random::mix(options.seed, static_cast<std::uint64_t>(number)), folder);
-  const Robot robot = c.read("tree_" + std::to_string(number) + ".urdf");
-  const auto fault = [&](long& count, const std::string& what) {
-    ++count;
-    if (report.faults.size() < kMostFaults) report.faults.push_back("tree " + std::to_string(number) + ": " + what);
-  };
+/// Counts a tree's parts.
+void count(const TreeCase& tree, const Robot& robot, campaign::Tally& tally) {
+  tally.count("links", static_cast<std::uint64_t>(robot.tree->numLinks()));
+  tally.count("joints", static_cast<std::uint64_t>(robot.tree->numJoints()));
+  tally.count("pairs", tree.numWatched());  // watched ones, of shapes
+  for (const char* name : {"revolute", "continuous", "prismatic", "fixed", "planar", "floating", "mimics", "chains"})
+    tally.count(name, 0);
+  const std::vector<Link>& links = tree.tree().links();
+  for (const Link& link : links) {
+    tally.count("mimics", link.master >= 0);
+    tally.count("chains", link.master >= 0 && links[static_cast<std::size_t>(link.master)].master >= 0);
+    for (const Shape& shape : link.shapes) tally.count("meshes", shape.mesh);
+    if (link.parent >= 0) tally.count(typeName(link.type));
+  }
+}
+
+void judge(TreeCase& tree, const std::string& file,
+           const std::function<void(std::uint64_t, const CertifiedResult&)>& certificates, campaign::Case& c) {
+  const Robot robot = tree.read(file);
   std::vector<LinkPairFinding> neighbours;
-  const CertifiedResult r = c.ask(robot, ContactMode::first, {}, static_cast<bool>(options.certificates), &neighbours),
-                        any = c.ask(robot, ContactMode::any);
-  const std::string untrue = c.leaveOut(neighbours, r, &report.left_out);
-  if (!untrue.empty()) fault(report.untrue, "neighbours: " + untrue);
-  if (options.certificates) options.certificates(number, r);
+  const CertifiedResult r = tree.ask(robot, ContactMode::first, {}, static_cast<bool>(certificates), &neighbours),
+                        any = tree.ask(robot, ContactMode::any);
+  const std::string untrue = tree.leaveOut(neighbours, r, c.tally);
+  if (!untrue.empty()) c.fault("untrue", "neighbours: " + untrue);
+  if (certificates) certificates(c.index, r);
 
-  ++report.trees;
-  report.links += robot.tree->numLinks();
-  report.joints += robot.tree->numJoints();
-  report.pairs += c.numWatched();
-  for (const Link& link : c.tree().links()) {
-    report.mimics += link.master >= 0;
-    report.chains += link.master >= 0 && c.tree().links()[static_cast<std::size_t>(link.master)].master >= 0;
-    for (const Shape& shape : link.shapes) report.meshes += shape.mesh;
-    if (link.parent < 0) continue;
-    static const JointType kinds[] = {JointType::revolute, JointType::continuous, JointType::prismatic,
-                                      JointType::fixed,    JointType::planar,     JointType::floating};
-    ++report.of_kind[std::find(kinds, kinds + 6, link.type) - kinds];
-  }
-  report.free += r.isFree();
-  report.hits += !r.isFree();
-  report.at_start += !r.isFree() && r.t_upper <= 0;
-  report.uncertain += !r.isFree() && !r.certain;
+  count(tree, robot, c.tally);
+  c.tally.count("free", r.isFree());
+  c.tally.count("hits", !r.isFree());
+  c.tally.count("starts", !r.isFree() && r.t_upper <= 0);
+  c.tally.count("uncertain", !r.isFree() && !r.certain);
 
-  const double seen = c.touchesBefore(r.t_lower, r.isFree(), &report.samples);
-  if (seen >= 0)
-    fault(report.missed, "touches at " + std::to_string(seen) + ", free before " + std::to_string(r.t_lower));
-  if (r.status == Status::undecided || any.status == Status::undecided)
-    fault(report.untrue, "undecided without a budget");
-  if (r.certain && !r.isFree() && !c.touches(r.t_upper, Size::larger))
-    fault(report.untrue, "nothing touches at " + std::to_string(r.t_upper));
-  if (any.certain && !any.isFree() && !c.touches(any.t_upper, Size::larger)) {
-    fault(report.untrue, "any contact: nothing touches at " + std::to_string(any.t_upper));
-  }
-  if (r.isFree() != any.isFree() && (r.isFree() ? any.certain : r.certain)) fault(report.differing, "modes differ");
+  std::uint64_t samples = 0;
+  const double seen = tree.touchesBefore(r.t_lower, r.isFree(), samples);
+  c.tally.count("samples", samples);
+  if (seen >= 0) c.fault("missed", campaign::format("touches at %.17g, free before %.17g", seen, r.t_lower));
+  if (r.status == Status::undecided || any.status == Status::undecided) c.fault("untrue", "undecided without a budget");
+  if (r.certain && !r.isFree() && !tree.touches(r.t_upper, Size::larger))
+    c.fault("untrue", campaign::format("nothing touches at %.17g", r.t_upper));
+  if (any.certain && !any.isFree() && !tree.touches(any.t_upper, Size::larger))
+    c.fault("untrue", campaign::format("any contact: nothing touches at %.17g", any.t_upper));
+  if (r.isFree() != any.isFree() && (r.isFree() ? any.certain : r.certain)) c.fault("differing", "modes differ");
 
-  if (!options.spoil || !r.certain || r.isFree() || r.contacts.empty()) return;
-  const CertifiedResult spoilt = c.ask(robot, ContactMode::first, touchingLink(r.contacts[0]));
+  if (!c.mutants || !r.certain || r.isFree() || r.contacts.empty()) return;
+  const CertifiedResult spoilt = tree.ask(robot, ContactMode::first, touchingLink(r.contacts[0]));
   if (!spoilt.isFree() && spoilt.t_lower < r.t_upper + 0.05) return;  // hidden by a contact of others
-  long ignored = 0;
-  ++report.spoilt;
-  report.spoilt_seen += c.touchesBefore(spoilt.t_lower, spoilt.isFree(), &ignored) >= 0;
+  c.tally.mutant("a link without geometry", 0.9, true,
+                 tree.touchesBefore(spoilt.t_lower, spoilt.isFree(), samples) >= 0);
 }
 
 }  // namespace
 
-void Report::add(const Report& o) {
-  trees += o.trees;
-  links += o.links;
-  joints += o.joints;
-  mimics += o.mimics;
-  chains += o.chains;
-  meshes += o.meshes;
-  for (int k = 0; k < 6; ++k) of_kind[k] += o.of_kind[k];
-  hits += o.hits;
-  at_start += o.at_start;
-  free += o.free;
-  uncertain += o.uncertain;
-  pairs += o.pairs;
-  left_out += o.left_out;
-  samples += o.samples;
-  missed += o.missed;
-  untrue += o.untrue;
-  differing += o.differing;
-  spoilt += o.spoilt;
-  spoilt_seen += o.spoilt_seen;
-  faults.insert(faults.end(), o.faults.begin(), o.faults.end());
-}
-
-Report run(const Options& options) {
-  const Folder folder;
-  std::atomic<int> next{0};
-  std::mutex mutex;
-  Report sum;
-  std::exception_ptr thrown;
-  const auto work = [&] {
-    Report own;
-    try {
-      for (int n; (n = next++) < options.trees;) judge(options, options.first + n, folder.path(), own);
-    } catch (...) {
-      next = options.trees;
-      const std::lock_guard<std::mutex> lock(mutex);
-      thrown = std::current_exception();
-    }
-    const std::lock_guard<std::mutex> lock(mutex);
-    sum.add(own);
+campaign::Campaign campaignOfTrees(std::function<void(std::uint64_t, const CertifiedResult&)> certificates) {
+  campaign::Campaign all;
+  all.number = [](std::uint64_t seed, std::uint64_t index) {
+    return campaign::CaseId{"", pairs::Random::mix(seed, index)};
   };
-  std::vector<std::thread> others;
-  for (int k = 1; k < options.threads; ++k) others.emplace_back(work);
-  work();
-  for (std::thread& thread : others) thread.join();
-  if (thrown) std::rethrow_exception(thrown);
-  return sum;
-}
-
-std::string toText(const Report& r) {
-  std::ostringstream out;
-  out << r.trees << " trees: " << r.links << " links, " << r.joints << " joints (revolute " << r.of_kind[0]
-      << ", continuous " << r.of_kind[1] << ", prismatic " << r.of_kind[2] << ", fixed " << r.of_kind[3] << ", planar "
-      << r.of_kind[4] << ", floating " << r.of_kind[5] << "; " << r.mimics << " mimic, " << r.chains
-      << " of them a mimic), " << r.meshes << " meshes, " << r.pairs << " watched pairs of shapes, " << r.left_out
-      << " pairs of neighbours left out\n"
-      << r.hits << " contacts (" << r.at_start << " at the start, " << r.uncertain << " not certain), " << r.free
-      << " free; " << r.samples << " samples\n"
-      << "missed " << r.missed << ", untrue " << r.untrue << ", modes that differ " << r.differing << "\n";
-  if (r.spoilt) out << "spoilt answers " << r.spoilt << ", seen " << r.spoilt_seen << "\n";
-  for (const std::string& fault : r.faults) out << fault << "\n";
-  return out.str();
+  all.look = [folder = std::make_shared<const Folder>(), certificates = std::move(certificates)](campaign::Case& c) {
+    TreeCase tree(c.id.seed, folder->path());
+    judge(tree, "tree_" + std::to_string(c.id.seed) + ".urdf", certificates, c);
+  };
+  return all;
 }
 
 }  // namespace urdf_trees

@@ -423,7 +423,7 @@ TEST_F(UrdfTest, TimeToReadGrowsWithTheFile) {
   const std::string unknown = write("strange.srdf", strange + "</robot>");
   EXPECT_LT(secondsOf([&] { EXPECT_EQ(loadSrdf(unknown, *chain.tree).pairs().size(), 0u); }), 3);
 
-  // What is left out of the file that urdfdom reads stands after as many other elements.
+  // Elements that urdfdom does not get stand after as many others.
   std::string parts, materials;
   for (int k = 0; k < kLinks; ++k) {
     parts += collision("<sphere radius='0.1'/>");

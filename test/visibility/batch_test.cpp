@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <iostream>
 #include <random>
 #include <stdexcept>
@@ -17,6 +16,7 @@
 
 #include "answers.h"
 #include "fcl_artic/fcl_artic.h"
+#include "harness.h"
 #include "recorder.h"
 #ifdef FCL_ARTIC_HAS_OFFSCREEN
 #include "fcl_artic/visibility/offscreen.h"
@@ -32,8 +32,7 @@ using Culler = std::shared_ptr<const VisibilityCuller>;
 
 /// FCL_ARTIC_VISIBILITY_MOTIONS=100000 in the environment makes it a campaign.
 std::size_t motions(std::size_t usual) {
-  const char* wanted = std::getenv("FCL_ARTIC_VISIBILITY_MOTIONS");
-  return wanted ? std::strtoull(wanted, nullptr, 10) : usual;
+  return campaign::fromEnvironment("FCL_ARTIC_VISIBILITY_MOTIONS", usual);
 }
 
 /// An arm of four joints among balls, bars and a mesh of pyramids, and a box that moves; links are checked against each

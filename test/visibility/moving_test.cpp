@@ -4,7 +4,6 @@
 // same test; what is swept holds the link; answers are those without the stage.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <iostream>
 #include <random>
 
@@ -16,6 +15,7 @@
 
 #include "answers.h"
 #include "fcl_artic/fcl_artic.h"
+#include "harness.h"
 #include "recorder.h"
 #ifdef FCL_ARTIC_HAS_OFFSCREEN
 #include "fcl_artic/visibility/offscreen.h"
@@ -34,8 +34,7 @@ using visibility::Batch;
 
 /// FCL_ARTIC_VISIBILITY_PAIRS=1000000 in the environment makes it a campaign.
 std::uint64_t pairs(std::uint64_t usual) {
-  const char* wanted = std::getenv("FCL_ARTIC_VISIBILITY_PAIRS");
-  return wanted ? std::strtoull(wanted, nullptr, 10) : usual;
+  return campaign::fromEnvironment("FCL_ARTIC_VISIBILITY_PAIRS", usual);
 }
 
 class Random {

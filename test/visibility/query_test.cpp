@@ -11,10 +11,8 @@
 
 #include <gtest/gtest.h>
 
-#include "answers.h"
-#include "engine.h"
-#include "generator.h"
 #include "visibility/cpu_executor.h"
+#include "with_and_without.h"
 #ifdef FCL_ARTIC_HAS_OFFSCREEN
 #include "fcl_artic/visibility/offscreen.h"
 #endif
@@ -28,47 +26,18 @@ using fcl_artic::VisibilityMode;
 
 /// FCL_ARTIC_VISIBILITY_QUERIES=20000 in the environment makes it a campaign.
 std::uint64_t queries() {
-  const char* wanted = std::getenv("FCL_ARTIC_VISIBILITY_QUERIES");
-  return wanted ? std::strtoull(wanted, nullptr, 10) : 320;
+  return campaign::fromEnvironment("FCL_ARTIC_VISIBILITY_QUERIES", 320);
 }
 
-struct Counts {
-  std::uint64_t queries = 0, contacts = 0, pairs = 0, culled = 0, nodes = 0, repeated = 0, different = 0;
-};
-
 /// Asks `n` of the campaign's questions without the stage and with it.
-Counts compare(std::uint64_t n, const std::shared_ptr<const fcl_artic::VisibilityCuller>& culler) {
-  Counts counts;
-  for (std::uint64_t i = 0; i < n; ++i) {
-    const std::uint64_t seed = 1000003 * 7 + i;
-    const std::string& family = campaign::familyOf(7, i);
-    const campaign::Scene scene = campaign::makeScene(family, seed);
-    campaign::Question question = campaign::prepare(scene);
-    question.manager->setVisibility(culler);
-    const fcl_artic::JointMotion motion = campaign::motionOf(scene, *question.tree);
-    CertifiedResult off, result;
-    question.manager->continuousCollide(motion, question.request, off);
-    ++counts.queries;
-    counts.contacts += off.status == fcl_artic::Status::contact;
-    for (const VisibilityMode mode : {VisibilityMode::on, VisibilityMode::automatic}) {
-      question.request.visibility = mode;
-      question.manager->continuousCollide(motion, question.request, result);
-      if (!fcl_artic::test::sameBits(off, result)) {
-        ++counts.different;
-        std::cout << "different: " << family << " " << seed << "\n";
-      }
-      if (mode != VisibilityMode::on) continue;
-      EXPECT_EQ(result.statistics.visibility_fallback, "");
-      counts.pairs += result.statistics.visibility.pairs;
-      counts.culled += result.statistics.visibility.culled;
-      counts.nodes += result.statistics.visibility.nodes;
-      counts.repeated += result.statistics.visibility.repeated;
-    }
-  }
-  std::cout << counts.queries << " queries, " << counts.contacts << " with contact, " << counts.pairs << " pairs seen, "
-            << counts.culled << " culled, " << counts.nodes << " nodes, " << counts.repeated << " repeated, "
-            << counts.different << " different\n";
-  return counts;
+campaign::Tally compare(std::uint64_t n, const std::shared_ptr<const fcl_artic::VisibilityCuller>& culler) {
+  campaign::Options o;
+  o.cases = n;
+  o.seed = 7;
+  o.threads = 1;
+  const campaign::Tally all = runWithoutFaults(campaignOf(fcl_artic::test::withAndWithoutStage(culler)), o).total;
+  EXPECT_GT(all["culled"], n / 20);
+  return all;
 }
 
 fcl_artic::VisibilityOptions optionsOf(fcl_artic::VisibilityRule rule, int resolution) {
@@ -80,29 +49,21 @@ fcl_artic::VisibilityOptions optionsOf(fcl_artic::VisibilityRule rule, int resol
 const auto kIntervals = fcl_artic::VisibilityRule::intervals, kOcclusion = fcl_artic::VisibilityRule::occlusion;
 
 TEST(VisibilityQueries, SameAnswersWithCpu) {
-  const Counts counts = compare(queries(), nullptr);
-  EXPECT_EQ(counts.different, 0u);
-  EXPECT_GT(counts.culled, counts.queries / 20);
-  EXPECT_GT(counts.nodes, counts.queries / 20);
-  EXPECT_GT(counts.repeated, counts.queries / 100);
+  const campaign::Tally all = compare(queries(), nullptr);
+  EXPECT_GT(all["nodes"], queries() / 20);
+  EXPECT_GT(all["repeated"], queries() / 100);
 }
 
 TEST(VisibilityQueries, SameAnswersWithTheOcclusionRule) {
-  const Counts counts =
-      compare(queries() / 4, std::make_shared<fcl_artic::VisibilityCuller>(optionsOf(kOcclusion, 16)));
-  EXPECT_EQ(counts.different, 0u);
-  EXPECT_GT(counts.culled, counts.queries / 20);
+  compare(queries() / 4, std::make_shared<fcl_artic::VisibilityCuller>(optionsOf(kOcclusion, 16)));
 }
 
 #ifdef FCL_ARTIC_HAS_OFFSCREEN
 TEST(VisibilityQueries, SameAnswersWithOsmesaAndEgl) {
   using fcl_artic::OffscreenBackend;
   for (const auto backend : {OffscreenBackend::osmesa, OffscreenBackend::egl}) {
-    for (const auto rule : {kIntervals, kOcclusion}) {
-      const Counts counts = compare(queries() / 8, fcl_artic::makeOffscreenCuller(backend, optionsOf(rule, 32)));
-      EXPECT_EQ(counts.different, 0u);
-      EXPECT_GT(counts.culled, counts.queries / 20);
-    }
+    for (const auto rule : {kIntervals, kOcclusion})
+      compare(queries() / 8, fcl_artic::makeOffscreenCuller(backend, optionsOf(rule, 32)));
   }
 }
 #endif

@@ -388,7 +388,7 @@ TEST_F(VerifyMeshes, ComparingTakesNoTime) {
   EXPECT_NE(said(world, robot(link("a", scales))).find("too much work"), std::string::npos);
 }
 
-// The links above each link are visited once. (With the square of the links, 10,000 take 10 s.)
+// Each link's way to the root is gone once. (With the square of the links, 10,000 take 10 s.)
 TEST_F(VerifyUrdf, LongChainsAreReadAtOnce) {
   std::string chain = link("l0", "");
   for (int k = 1; k <= 10000; ++k) {

@@ -16,7 +16,7 @@ namespace fcl_artic::planning {
 
 /// Options of mend().
 struct MendOptions {
-  double seconds = 5;        ///< It takes no longer than this, about.
+  double seconds = 5;        ///< It takes no longer than this, about; above 0.
   double clearance = 0.005;  ///< m, that detours keep beyond the margin; less only where no way is found that does
   CertifiedRequest request;  ///< margin, scope and budget of what is asked of the manager
 };
@@ -49,6 +49,12 @@ struct Mended {
 /// @param given      times and positions.
 /// @param variables  that detours may move; the others stay where the first waypoint has them.
 /// @param unwrap     of the given way (JointTrajectory::linear()).
+/// @throws std::invalid_argument
+///   - for a null manager;
+///   - for times and positions that JointTrajectory::linear() does not take;
+///   - for `variables` that are empty, repeated or not the tree's;
+///   - for another variable that is not at the same value at all waypoints;
+///   - for seconds that are not above 0, and a clearance below 0.
 /// @throws std::runtime_error saying why it cannot be: the start or the goal touches, no way was found in the time,
 ///   joints that planners don't take, variables that are some of a joint's.
 FCL_ARTIC_EXPORT Mended mend(const std::shared_ptr<const ArticulatedCollisionManager>& manager, const Waypoints& given,

@@ -165,9 +165,9 @@ bool sameBodies(const Verdict::Contact& a, const Verdict::Contact& b) {
 
 /// The first contacts of the other pairs that touch between the two waypoints of the first one.
 void addOthers(const Cell& cell, const Motion& motion, fcl_artic::CertifiedRequest request, Verdict& verdict) {
-  constexpr std::size_t kMost = 1000;
+  constexpr std::size_t kMax = 1000;
   request.mode = fcl_artic::ContactMode::firstOfEveryPair;
-  request.max_contacts = kMost;
+  request.max_contacts = kMax;
   const std::size_t before = std::min(verdict.waypoint, motion.times.size() - 2);
   const std::vector<double>& times = motion.trajectory.times();  // blends have more pieces than waypoints
   for (std::size_t k = 0; k < motion.trajectory.numPieces(); ++k) {

@@ -23,7 +23,7 @@ namespace fcl_artic_moveit {
 namespace {
 
 constexpr const char* kName = "CertifySolution";
-constexpr double kMostBudget = 9007199254740992;  // 2^53: all whole numbers up to it are doubles
+constexpr double kMaxBudget = 9007199254740992;  // 2^53: all whole numbers up to it are doubles
 
 /// The values of the parameters.
 struct Settings {
@@ -95,7 +95,7 @@ class Parameters {
       out.certifier.time_limit = number("time_limit", changed);
       out.certifier.check();
       const double budget = number("budget", changed);
-      if (!(budget >= 0 && budget <= kMostBudget) || budget != std::floor(budget)) {
+      if (!(budget >= 0 && budget <= kMaxBudget) || budget != std::floor(budget)) {
         throw std::invalid_argument("budget is " + std::to_string(budget) + "; it has to be a whole number, 0 or more");
       }
       out.certifier.budget = static_cast<std::uint64_t>(budget);
@@ -135,7 +135,7 @@ class Parameters {
     } else if (value.get_type() == rclcpp::ParameterType::PARAMETER_INTEGER) {
       descriptor.integer_range.resize(1);
       descriptor.integer_range[0].from_value = static_cast<std::int64_t>(least);
-      descriptor.integer_range[0].to_value = static_cast<std::int64_t>(kMostBudget);
+      descriptor.integer_range[0].to_value = static_cast<std::int64_t>(kMaxBudget);
     }
     const std::string full = prefix_ + name;
     if (!node_.has_parameter(full)) {

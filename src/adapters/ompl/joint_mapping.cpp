@@ -117,8 +117,7 @@ JointMapping::JointMapping(const ob::StateSpace& space, std::shared_ptr<const Ki
 
 /// The number of a variable that a single number may drive: no part of a quaternion, as these don't go straight.
 int JointMapping::requireVariable(const std::string& name, const std::string& where) const {
-  for (int v = 0; v < tree_->dof(); ++v) {
-    if (tree_->variableName(v) != name) continue;
+  if (const int v = tree_->findVariable(name); v >= 0) {
     const JointId joint = tree_->variableJoint(v);
     const int quaternion = tree_->quaternionVariable(joint);
     if (quaternion < 0 || v < quaternion) return v;
@@ -132,9 +131,8 @@ int JointMapping::requireVariable(const std::string& name, const std::string& wh
 }
 
 int JointMapping::requireJoint(const std::string& name, const Part& part) const {
-  for (JointId j = 0; j < tree_->numJoints(); ++j) {
-    if (tree_->joint(j).name == name && tree_->joint(j).type == part.joint) return tree_->jointVariable(j);
-  }
+  const JointId j = tree_->findJoint(name);
+  if (j >= 0 && tree_->joint(j).type == part.joint) return tree_->jointVariable(j);
   throw std::invalid_argument(part.what + ": '" + name + "' of robot '" + tree_->name() + "' is none");
 }
 

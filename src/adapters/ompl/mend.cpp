@@ -96,11 +96,11 @@ struct Straight {
   }
 };
 
+/// @param way  the straight way through the given points.
 /// @param isFree  whether a piece is free: other pieces are divided.
 template <class IsFree>
-Straight straightOf(const KinematicTree& tree, const Waypoints& given, JointTrajectory::Unwrap unwrap,
+Straight straightOf(const KinematicTree& tree, const Waypoints& given, const JointTrajectory& way,
                     const IsFree& isFree) {
-  const JointTrajectory way = JointTrajectory::linear(tree, given.times, given.positions, unwrap);
   Straight out;
   const auto add = [&](VectorXd q, double t, bool given) {
     out.points.push_back(std::move(q));
@@ -146,7 +146,7 @@ struct Attempt {
 class Mender {
  public:
   Mender(const std::shared_ptr<const ArticulatedCollisionManager>& manager, const Waypoints& given,
-         const std::vector<int>& variables, JointTrajectory::Unwrap unwrap, const MendOptions& options,
+         const JointTrajectory& way, const std::vector<int>& variables, const MendOptions& options,
          const Attempt& attempt)
       : tree_(manager->tree()), options_(options), seconds_(attempt.seconds), variables_(variables), manager_(manager) {
     SetupOptions setup;
@@ -170,7 +170,7 @@ class Mender {
     setup.request.check_scene = options.request.check_scene;
     setup.request.work_budget = options.request.work_budget;
     given_request_ = setup.request;
-    way_ = straightOf(tree_, given, unwrap, [&](const JointMotion& piece) { return isFreeAsGiven(piece); });
+    way_ = straightOf(tree_, given, way, [&](const JointMotion& piece) { return isFreeAsGiven(piece); });
     addBounds(setup);
     setup.request.margin += attempt.clearance;
     request_ = setup.request;
@@ -474,10 +474,50 @@ class Mender {
   std::vector<Detour> detours_;  ///< in their order, none within another
 };
 
+void requireOptions(const MendOptions& options) {
+  std::ostringstream why;
+  if (!(options.seconds > 0 && std::isfinite(options.seconds))) {
+    why << "mend: options.seconds is " << options.seconds << ", not a number above 0";
+  } else if (!(options.clearance >= 0 && std::isfinite(options.clearance))) {
+    why << "mend: options.clearance is " << options.clearance << ", not a number of at least 0 (m)";
+  }
+  if (!why.str().empty()) throw std::invalid_argument(why.str());
+}
+
+/// Detours move the variables, and no others: those stay where the first waypoint has them.
+/// @param positions  each of the tree.
+void requireVariables(const KinematicTree& tree, const Points& positions, const std::vector<int>& variables) {
+  const auto refuse = [](const std::string& why) { throw std::invalid_argument("mend: " + why); };
+  if (variables.empty()) refuse("`variables` is empty: no joint may move");
+  std::vector<bool> may_move(static_cast<std::size_t>(tree.dof()));
+  for (const int v : variables) {
+    if (v < 0 || v >= tree.dof()) {
+      refuse("`variables` holds " + std::to_string(v) + "; robot '" + tree.name() + "' has variables 0 to " +
+             std::to_string(tree.dof() - 1));
+    }
+    if (may_move[static_cast<std::size_t>(v)]) {
+      refuse("`variables` holds " + std::to_string(v) + " ('" + tree.variableName(v) + "') twice");
+    }
+    may_move[static_cast<std::size_t>(v)] = true;
+  }
+  for (int v = 0; v < tree.dof(); ++v) {
+    for (std::size_t k = 1; !may_move[static_cast<std::size_t>(v)] && k < positions.size(); ++k) {
+      if (positions[k][v] == positions[0][v]) continue;
+      refuse("'" + tree.variableName(v) + "' (" + std::to_string(v) + ") is not in `variables`, and waypoint " +
+             std::to_string(k) + " has it elsewhere than waypoint 0: add it");
+    }
+  }
+}
+
 }  // namespace
 
 Mended mend(const std::shared_ptr<const ArticulatedCollisionManager>& manager, const Waypoints& given,
             const std::vector<int>& variables, JointTrajectory::Unwrap unwrap, const MendOptions& options) {
+  if (!manager) throw std::invalid_argument("mend: the manager is null");
+  requireOptions(options);
+  const KinematicTree& tree = manager->tree();
+  const JointTrajectory way = JointTrajectory::linear(tree, given.times, given.positions, unwrap);
+  requireVariables(tree, given.positions, variables);
   const Clock::time_point begin = Clock::now();
   for (std::size_t i = 0;; ++i) {
     const bool last = kClearances[i] == 0;
@@ -485,7 +525,7 @@ Mended mend(const std::shared_ptr<const ArticulatedCollisionManager>& manager, c
     try {
       const double kept = kClearances[i] * options.clearance;
       const double seconds = kShares[i] * (options.seconds - secondsSince(begin));
-      Mended out = Mender(manager, given, variables, unwrap, options, {kept, seconds}).run();
+      Mended out = Mender(manager, given, way, variables, options, {kept, seconds}).run();
       out.kept = kept;
       out.ms = 1e3 * secondsSince(begin);
       return out;

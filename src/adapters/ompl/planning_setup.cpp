@@ -26,9 +26,7 @@ std::vector<std::string> variableNames(const KinematicTree& tree) {
 }
 
 int requireVariable(const KinematicTree& tree, const std::string& name, const std::string& what) {
-  for (int v = 0; v < tree.dof(); ++v) {
-    if (tree.variableName(v) == name) return v;
-  }
+  if (const int v = tree.findVariable(name); v >= 0) return v;
   throw std::invalid_argument(what + ": robot '" + tree.name() + "' has no joint '" + name +
                               "' with a value of its own (it is unknown, fixed or a mimic)" +
                               text::didYouMean(name, variableNames(tree)));
@@ -46,9 +44,9 @@ bool standsStill(const Joint& joint) {
 
 /// A joint that can be planned for.
 const Joint& requireJoint(const KinematicTree& tree, const std::string& name) {
-  for (JointId j = 0; j < tree.numJoints(); ++j) {
+  if (const JointId j = tree.findJoint(name); j >= 0) {
     const Joint& joint = tree.joint(j);
-    if (joint.name == name && !joint.mimics && joint.type != JointType::fixed) return joint;
+    if (!joint.mimics && joint.type != JointType::fixed) return joint;
   }
   throw std::invalid_argument("setUpPlanning: robot '" + tree.name() + "' has no joint '" + name +
                               "' that can be planned for (it is unknown, fixed or a mimic)" +

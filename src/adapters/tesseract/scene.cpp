@@ -293,10 +293,7 @@ JointTrajectory TesseractScene::trajectory(const ::tesseract::common::JointTraje
     std::vector<bool> named(static_cast<std::size_t>(tree->dof()));
     for (std::size_t k = 0; k < state.joint_ids.size(); ++k) {
       const std::string& name = state.joint_ids[k].name();
-      int variable = -1;
-      for (int v = 0; v < tree->dof(); ++v) {
-        if (tree->variableName(v) == name) variable = v;
-      }
+      const int variable = tree->findVariable(name);
       if (variable < 0) {
         throw std::invalid_argument(where + "'" + name + "' is no joint with one variable of its own");
       }

@@ -114,8 +114,7 @@ Document readDocument(const std::string& where, const std::string& file) {
       noteLimit(*e, document.notes);
     }
   }
-  // A material belongs to visual elements only, so it is dropped.
-  removeChildren(robot, "material");
+  removeChildren(robot, "material");  // a material belongs to visual elements only
   tinyxml2::XMLPrinter printer;
   xml.Print(&printer);
   document.xml = printer.CStr();

@@ -4,6 +4,8 @@
 #pragma once
 
 #include "convex/piece_kinds.h"
+#include "narrowphase/solver/swept_box.h"
+#include "numerics/constants.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {

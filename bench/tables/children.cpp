@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/children.h"
+#include "children.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>

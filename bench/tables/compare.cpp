@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/compare.h"
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -17,11 +15,12 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "bench/children.h"
+#include "children.h"
 #include "exit_status.h"
 #include "fcl_artic/continuous_collision.h"
 #include "pairs/random_pairs.h"
 #include "progress.h"
+#include "tables.h"
 
 namespace fcl_artic::app {
 namespace {
@@ -156,7 +155,7 @@ std::vector<TaskResult> runWay(const FclWay& way, const std::vector<PairQuery>& 
 }
 
 /// Facts about one query.
-struct Known {
+struct QueryTruth {
   bool hit = false;
   double time = 1;
   double gap = 0;  ///< least sampled one
@@ -164,7 +163,7 @@ struct Known {
 
 /// Sampled truth. A contact that the library shows and the samples have passed over counts too, if the judge finds the
 /// bodies in contact at the time it names. The library's word alone counts nothing.
-Known know(const PairQuery& query, const TaskResult& certified, std::size_t& added) {
+QueryTruth know(const PairQuery& query, const TaskResult& certified, std::size_t& added) {
   const Judge judge(query);
   const pairs::Truth truth = judge.firstContact();
   const bool sooner = !truth.hit || certified.upper < truth.time - kLate / 100;
@@ -179,7 +178,7 @@ enum Grade { right, late, early, missed, false_contact, refused, crashed, timed_
 constexpr std::array<const char*, grades> kGrades{"right", "late",    "early",   "missed",
                                                   "false", "refused", "crashed", "timed out"};
 
-Grade grade(const PairQuery& query, const Known& known, const TaskResult& r) {
+Grade grade(const PairQuery& query, const QueryTruth& known, const TaskResult& r) {
   if (r.end == TaskResult::End::refused) return refused;
   if (r.end == TaskResult::End::crashed) return crashed;
   if (r.end == TaskResult::End::timed_out) return timed_out;
@@ -221,7 +220,7 @@ SetReport compareSet(const std::string& name, Bodies bodies, const CompareOption
   std::vector<PairQuery> obbrss;
   for (const PairQuery& q : queries) obbrss.push_back(pairs::withVolume(q, pairs::Volume::obbrss));
   const auto brackets = runWay({"", pairs::Volume::rss, standard}, queries, options.limit_s, {});
-  std::vector<Known> known;
+  std::vector<QueryTruth> known;
   for (std::size_t i = 0; i < queries.size(); ++i, show(1, i)) {
     known.push_back(know(queries[i], brackets[i], report.added));
     report.hits += known[i].hit;

@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "../app/run_program.h"
-#include "bench/children.h"
+#include "children.h"
+#include "run_program.h"
 
 namespace compare_test {
 
