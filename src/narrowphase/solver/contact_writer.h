@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Records the contacts that the search has found, and finds their points and normals. Times are the candidate's; here
-// they are recorded.
+// Records a contact that the search has found, with its point and normal. Times are the candidate's; here they are
+// recorded.
 #pragma once
 
 #include "narrowphase/solver/follower.h"

@@ -72,8 +72,8 @@ inline double gapWhereTheyRest(const DifferenceBody& hulls, const Simplex& simpl
   return gap;
 }
 
-/// The gap of two hulls. If GJK claims overlap, it is a negative one, by gapWhereTheyRest(); -kUnknownGap if the hulls
-/// are in each other by more than `shallow`.
+/// The gap of two hulls as GJK finds it. If GJK claims overlap, it is gapWhereTheyRest() less the radii, or
+/// -kUnknownGap if the hulls are in each other by more than `shallow`.
 inline double restingGap(const DifferenceBody& hulls, double radii, double shallow, GjkResult& g) {
   gjk(hulls, hulls.pose.c, {kFollowingAccuracy, radii, 64}, g);
   if (!g.overlap || unbounded(*hulls.a) || unbounded(*hulls.b)) return g.lower - radii;
