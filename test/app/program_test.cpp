@@ -359,7 +359,7 @@ TEST_F(ProgramTest, ErrorsHaveOneStyleAndTellWhatWasMeant) {
     std::string arguments, said;
   } cases[] = {
       {"chek", "'chek' is neither a verb nor an option of fcl_artic; did you mean 'check'?"},
-      {"bench tabel1", "'tabel1' is neither a verb nor an option of 'bench'; did you mean 'table1'?"},
+      {"bench robto", "'robto' is neither a verb nor an option of 'bench'; did you mean 'robot'?"},
       {"check --rboot " + robot + motion, "'--rboot' is no option of 'check'; did you mean '--robot'?"},
       {query + " --every-pairs=1", "'--every-pairs' is no option of 'check'; did you mean '--every-pair'?"},
       {query + " --zzzzzz", "'--zzzzzz' is no option of 'check'\n"},

@@ -53,7 +53,8 @@ CertifiedPairResult ask(const Body& a, const Body& b, const Isometry3d& from, co
     const fcl::TranslationMotiond go(from, to);
     fcl_artic::continuousCollide(a.geometry.get(), &rest, b.geometry.get(), &go, request, result);
   } else {
-    const fcl::InterpMotion<double> go(from, to);
+    const fcl::InterpMotion<double> go(from.linear(), from.translation(), to.linear(), to.translation(),
+                                       Vector3d::Zero());
     fcl_artic::continuousCollide(a.geometry.get(), &rest, b.geometry.get(), &go, request, result);
   }
   return result;

@@ -48,14 +48,19 @@ fcl::Transform3d pose(const Vector3d& at, const Vector3d& turn) {
 TEST(Slivers, ThatPassEachOtherAskewAreApartAcrossBoth) {
   const std::shared_ptr<Mesh> tube = tubeOfSlivers();
   const fcl::Transform3d still = fcl::Transform3d::Identity();
-  const fcl::InterpMotion<double> stays(still, still);
+  // FCL's shorter constructors leave the reference point uninitialised.
+  const auto motion = [](const fcl::Transform3d& from, const fcl::Transform3d& to) {
+    return fcl::InterpMotion<double>(from.linear(), from.translation(), to.linear(), to.translation(),
+                                     Vector3d::Zero());
+  };
+  const fcl::InterpMotion<double> stays = motion(still, still);
   int touching = 0;
   for (int i = 0; i < 12; ++i) {
     // Side by side, 3 cm apart, they tilt into each other; or, where i is odd, to where they stay apart.
     const double more = 0.004 * i, away = i % 2 ? 0.3 : 0;
-    const fcl::InterpMotion<double> comes(
-        pose(Vector3d(0.07 + away, -0.22 - more, 0.19), Vector3d(0.07, -0.42 + more, 0.02)),
-        pose(Vector3d(more + away, -0.22, 0.13), Vector3d(0.075, 0.2 - more, 0.03)));
+    const fcl::InterpMotion<double> comes =
+        motion(pose(Vector3d(0.07 + away, -0.22 - more, 0.19), Vector3d(0.07, -0.42 + more, 0.02)),
+               pose(Vector3d(more + away, -0.22, 0.13), Vector3d(0.075, 0.2 - more, 0.03)));
     CertifiedPairResult result;
     continuousCollide(tube.get(), &stays, tube.get(), &comes, CertifiedPairRequest(), result);
     touching += result.status == Status::contact;
