@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Queries as text: read again they are asked again, with the same bits; what is not understood is refused by name.
+#include <array>
 #include <cstring>
 #include <set>
 
@@ -17,8 +18,14 @@ using namespace fcl_artic::test;
 using Json = nlohmann::ordered_json;
 
 template <class T>
+std::array<unsigned char, sizeof(T)> bytesOf(const T& value) {
+  std::array<unsigned char, sizeof(T)> bytes;
+  std::memcpy(bytes.data(), &value, sizeof value);
+  return bytes;
+}
+template <class T>
 void expectBits(const T& a, const T& b, const std::string& what) {
-  EXPECT_EQ(std::memcmp(&a, &b, sizeof a), 0) << what << ": " << a << " and " << b;
+  EXPECT_EQ(bytesOf(a), bytesOf(b)) << what << ": " << a << " and " << b;
 }
 void expectBits(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const std::string& what) {
   for (int k = 0; k < 3; ++k) expectBits(a[k], b[k], what);
