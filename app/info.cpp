@@ -91,10 +91,10 @@ std::vector<std::string> unitWarnings(const Robot& robot, const std::vector<std:
   constexpr double kFarLarger = 20, kFarSmaller = 0.01;
   std::vector<std::string> warnings;
   std::size_t meshes = 0, large = 0;
-  const std::pair<LinkId, Shape>*largest = nullptr, *any = nullptr;
+  const std::pair<LinkId, Shape>*largest = nullptr, *any = &shapes.front();
   const auto size = [](const std::pair<LinkId, Shape>& s) { return s.second.extents.maxCoeff(); };
   for (const auto& shape : shapes) {
-    if (!any || size(shape) > size(*any)) any = &shape;
+    if (size(shape) > size(*any)) any = &shape;
     if (shape.second.kind != "mesh") continue;
     ++meshes;
     if (size(shape) <= kFarLarger * reach) continue;
