@@ -64,6 +64,24 @@ std::string motionArguments(const CheckVerb& options, const std::optional<JointM
   return verifierInterpolation(options.interpolation.kind(), text);
 }
 
+/// Sets what a report says of the motion: one of the two, which must live as long as the report.
+void setMotion(const std::optional<JointMotion>& motion, const std::optional<JointTrajectory>& trajectory,
+               Report& report) {
+  report.configuration = [&](double t) { return trajectory ? trajectory->configuration(t) : motion->configuration(t); };
+  if (!trajectory) return;
+  report.begin = trajectory->beginTime();
+  report.end = trajectory->endTime();
+  report.pieces = trajectory->numPieces();
+}
+
+void print(const Report& report, bool json) {
+  if (json) {
+    fmt::print("{}\n", jsonReport(report).dump(2));
+  } else {
+    fmt::print("{}", textReport(report));
+  }
+}
+
 int runCheck(CheckVerb& options) {
   if (!options.views.image.empty()) render::requirePictures();
   (void)makeCuller(options.visibility.executor);  // refused before files are read
@@ -161,11 +179,8 @@ int runCheck(CheckVerb& options) {
 
   std::vector<std::string> notes = world.notes(manager);
   notes.insert(notes.end(), motion_notes.begin(), motion_notes.end());
-  const auto configuration = [&](double t) {
-    return trajectory ? trajectory->configuration(t) : motion->configuration(t);
-  };
-  const double begin = trajectory ? trajectory->beginTime() : 0, end = trajectory ? trajectory->endTime() : 1;
-  if (result.first() && result.t_lower <= begin) notes.insert(notes.begin(), startHint(*result.first()));
+  if (result.first() && result.t_lower <= (trajectory ? trajectory->beginTime() : 0))
+    notes.insert(notes.begin(), startHint(*result.first()));
   if (result.certificate) {
     const std::string missing = certificates.add(*result.certificate);
     if (!missing.empty()) notes.push_back(missing);
@@ -175,18 +190,15 @@ int runCheck(CheckVerb& options) {
       if (!written.empty()) notes.push_back(written);
     });
   }
-  Report report{tree, request, result, notes, configuration, begin, end, clearance ? &*clearance : nullptr};
-  if (trajectory) report.pieces = trajectory->numPieces();
+  Report report{tree, request, result, notes, {}};
+  setMotion(motion, trajectory, report);
+  if (clearance) report.clearance = &*clearance;
 
   world.unwritten.attempt([&] {
     writeViews(options.views, world, manager, trajectory ? RobotMotion(*trajectory) : RobotMotion(*motion), report);
   });
   notes.insert(notes.end(), world.unwritten.reasons().begin(), world.unwritten.reasons().end());
-  if (options.json) {
-    fmt::print("{}\n", jsonReport(report).dump(2));
-  } else {
-    fmt::print("{}", textReport(report));
-  }
+  print(report, options.json);
   return world.unwritten.exitStatus(exitStatus(result));
 }
 
@@ -201,18 +213,9 @@ int runReplay(const CheckVerb& options) {
                     "differ",
                     query.library, query.instruction_set, FCL_ARTIC_VERSION, instructionSet()));
   }
-  const auto configuration = [&](double t) {
-    return query.trajectory ? query.trajectory->configuration(t) : query.motion->configuration(t);
-  };
-  const double begin = query.trajectory ? query.trajectory->beginTime() : 0;
-  const double end = query.trajectory ? query.trajectory->endTime() : 1;
-  Report report{query.manager.tree(), query.request, result, notes, configuration, begin, end};
-  if (query.trajectory) report.pieces = query.trajectory->numPieces();
-  if (options.json) {
-    fmt::print("{}\n", jsonReport(report).dump(2));
-  } else {
-    fmt::print("{}", textReport(report));
-  }
+  Report report{query.manager.tree(), query.request, result, notes, {}};
+  setMotion(query.motion, query.trajectory, report);
+  print(report, options.json);
   return exitStatus(result);
 }
 

@@ -31,9 +31,8 @@ struct FCL_ARTIC_EXPORT RecordedQuery {
 
 /// Reads a query from the text that ArticulatedCollisionManager::writeQuery() made of it. Pairs of links that the text
 /// calls proven apart are proven again.
-/// @throws std::invalid_argument for text that is no such query, with the way to what is missing, of another kind or
-/// not
-///   known ("robot.joints[2].axis"), and for all that the manager refuses.
+/// @throws std::invalid_argument for text that is no such query, with the way to the field that is missing, not known
+///   or of another kind ("robot.joints[2].axis"), and for all that the manager refuses.
 /// @throws std::runtime_error if the library was built without nlohmann-json.
 FCL_ARTIC_EXPORT RecordedQuery readQuery(std::string_view text);
 

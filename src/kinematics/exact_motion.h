@@ -10,9 +10,8 @@
 namespace fcl_artic {
 
 struct ExactMotion {
-  /// @param coefficients  as JointMotion::coefficients() returns them: quaternions whose length is 1 to rounding are
-  /// taken
-  ///   as they are.
+  /// @param coefficients  as JointMotion::coefficients() returns them. If a quaternion's length is 1 to rounding, it is
+  ///   taken as it is.
   /// @param references  as JointMotion::references() returns them; empty: all variables are polynomials.
   /// @throws std::invalid_argument as JointMotion::polynomial() and tangentHalfAnglePolynomial().
   static JointMotion motion(const KinematicTree& tree, const Eigen::MatrixXd& coefficients,

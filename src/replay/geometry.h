@@ -15,9 +15,8 @@ GeometryRecord geometryRecord(const fcl::CollisionGeometryd& geometry);
 
 /// A geometry of which queries read the same.
 /// @param at  way to the record, for messages.
-/// @throws std::invalid_argument for what FCL's constructors and readers don't look at; what the manager refuses is
-/// left
-///   to it.
+/// @throws std::invalid_argument for numbers that FCL's constructors and readers don't check. The manager's own
+///   refusals are left to the manager.
 std::shared_ptr<fcl::CollisionGeometryd> geometryOf(const GeometryRecord& record, const std::string& at);
 
 }  // namespace fcl_artic::replay

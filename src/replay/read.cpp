@@ -83,7 +83,7 @@ class Builder {
   }
 
   ArticulatedCollisionManager run() {
-    ArticulatedCollisionManager manager(makeTree());
+    ArticulatedCollisionManager manager(std::make_shared<const KinematicTree>(treeOf(record_.robot)));
     addCarried(manager);
     addObstacles(manager);
     manager.setAllowedCollisions(makeAllowed());
@@ -99,13 +99,6 @@ class Builder {
   }
 
  private:
-  std::shared_ptr<const KinematicTree> makeTree() const {
-    auto tree = std::make_shared<KinematicTree>(record_.robot.name);
-    for (const std::string& link : record_.robot.links) tree->addLink(link);
-    for (const Joint& joint : record_.robot.joints) tree->addJoint(joint);
-    return tree;
-  }
-
   std::shared_ptr<fcl::CollisionGeometryd> geometry(std::size_t number, const std::string& at) const {
     if (number < geometries_.size()) return geometries_[number];
     refuse(at + ".geometry", "is " + std::to_string(number) + ", and there are " + std::to_string(geometries_.size()));

@@ -99,6 +99,13 @@ void fields(A& a, RobotRecord& r) {
   a("links", r.links);
   a("joints", r.joints);
 }
+/// @throws std::invalid_argument as KinematicTree::addLink() and addJoints().
+inline KinematicTree treeOf(const RobotRecord& robot) {
+  KinematicTree tree(robot.name);
+  for (const std::string& link : robot.links) tree.addLink(link);
+  tree.addJoints(robot.joints);
+  return tree;
+}
 
 /// A geometry as FCL has it.
 struct GeometryRecord {

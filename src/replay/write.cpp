@@ -66,12 +66,9 @@ class Recorder {
                                 " would be rounded once more when it is read; change it by 1e-15");
   }
   void requireSameTree() const {
-    KinematicTree again(tree_.name());
-    for (const std::string& link : record_.robot.links) again.addLink(link);
+    const KinematicTree again = treeOf(record_.robot);
     for (JointId j = 0; j < tree_.numJoints(); ++j) {
-      const Joint& joint = tree_.joint(j);
-      again.addJoint(joint);
-      const Joint& read = again.joint(j);
+      const Joint &joint = tree_.joint(j), &read = again.joint(j);
       requireExact(read.origin.matrix() == joint.origin.matrix() && read.axis == joint.axis,
                    "joint '" + joint.name + "'");
     }

@@ -110,13 +110,13 @@ TEST(QueryText, RandomWorldsAnswerWithTheSameBits) {
   for (std::uint64_t seed = 0; seed < 24 && !HasFailure(); ++seed) {
     SCOPED_TRACE(seed);
     const World one = world(seed);
-    Chance chance(seed + 1000);
+    Random random(seed + 1000);
     for (int k = 0; k < 4; ++k) {
-      const Eigen::VectorXd q0 = configuration(chance, *one.tree), q1 = configuration(chance, *one.tree);
-      CertifiedRequest asked = request(chance);
+      const Eigen::VectorXd q0 = configuration(random, *one.tree), q1 = configuration(random, *one.tree);
+      CertifiedRequest asked = request(random);
       if (asked.method == Method::redon2004) asked.visibility = VisibilityMode::off;
-      const JointMotion motion =
-          chance.coin() ? JointMotion::linear(*one.tree, q0, q1) : JointMotion::tangentHalfAngle(*one.tree, q0, q1);
+      const JointMotion motion = random.chance(0.5) ? JointMotion::linear(*one.tree, q0, q1)
+                                                    : JointMotion::tangentHalfAngle(*one.tree, q0, q1);
       const CertifiedResult result = expectSameBits(one.manager, motion, asked);
       const std::string text = one.manager.writeQuery(motion, asked);
       for (const char* value : kTelling) {
@@ -140,12 +140,12 @@ TEST(QueryText, TrajectoriesAnswerWithTheSameBits) {
   for (std::uint64_t seed = 100; seed < 108; ++seed) {
     SCOPED_TRACE(seed);
     const World one = world(seed);
-    Chance chance(seed);
-    std::vector<double> times = {chance.in(1e9, 2e9)};
-    std::vector<Eigen::VectorXd> waypoints = {configuration(chance, *one.tree)}, rates;
+    Random random(seed);
+    std::vector<double> times = {random.uniform(1e9, 2e9)};
+    std::vector<Eigen::VectorXd> waypoints = {configuration(random, *one.tree)}, rates;
     for (int k = 0; k < 3; ++k) {
-      times.push_back(times.back() + chance.in(0.1, 1));
-      waypoints.push_back(waypoints.back() + 0.2 * configuration(chance, *one.tree));
+      times.push_back(times.back() + random.uniform(0.1, 1));
+      waypoints.push_back(waypoints.back() + 0.2 * configuration(random, *one.tree));
       for (const JointId j : one.tree->quaternionJoints()) {
         const int v = one.tree->quaternionVariable(j);
         waypoints.back().segment<4>(v).normalize();
@@ -155,7 +155,7 @@ TEST(QueryText, TrajectoriesAnswerWithTheSameBits) {
     for (Eigen::VectorXd& rate : rates) {
       for (const JointId j : one.tree->quaternionJoints()) rate[one.tree->quaternionVariable(j) + 3] = 0;
     }
-    CertifiedRequest asked = request(chance);
+    CertifiedRequest asked = request(random);
     asked.visibility = VisibilityMode::off;
     const JointTrajectory trajectory = seed % 2 ? JointTrajectory::linear(*one.tree, times, waypoints)
                                                 : JointTrajectory::cubic(*one.tree, times, waypoints, rates);
@@ -192,8 +192,8 @@ struct Turning {
 TEST(QueryText, EachGeometryIsReadAgain) {
   for (int kind = 0; kind < kKinds; ++kind) {
     SCOPED_TRACE(kind);
-    Chance chance(static_cast<std::uint64_t>(kind));
-    const Turning world(geometry(kind, chance));
+    Random random(static_cast<std::uint64_t>(kind));
+    const Turning world(geometry(kind, random));
     (void)expectSameBits(world.manager, world.motion(), {});
   }
   const Turning empty(std::make_shared<fcl::OcTreed>(0.1));
@@ -236,10 +236,10 @@ void expectRefusals(const Json& whole, const Json::json_pointer& place, const st
 Json richQuery() {
   for (std::uint64_t seed = 0;; ++seed) {
     const World one = world(seed);
-    Chance chance(seed);
-    const Eigen::VectorXd q0 = configuration(chance, *one.tree);
+    Random random(seed);
+    const Eigen::VectorXd q0 = configuration(random, *one.tree);
     const Json json = Json::parse(one.manager.writeQuery(
-        JointTrajectory::tangentHalfAngle(*one.tree, {0, 1}, {q0, configuration(chance, *one.tree)})));
+        JointTrajectory::tangentHalfAngle(*one.tree, {0, 1}, {q0, configuration(random, *one.tree)})));
     bool rich = true;
     for (const char* name : {"geometries", "carried", "moving", "obstacles", "margins"})
       rich = rich && !json[name].empty();
