@@ -14,6 +14,7 @@
 #include "geometry/closed_parts.h"
 #include "geometry/outer_hull.h"
 #include "geometry/solid_space.h"
+#include "geometry/wide_tree.h"
 #include "numerics/baseline_isa.h"
 
 #include "convex/piece_kinds.h"
@@ -343,6 +344,15 @@ const engine::TreeView& ShapeTree::viewWithParts() const {
   if (view_.num_pieces <= 1) return view_;  // nothing to cut: ConvexParts would show the same
   std::call_once(parts_once_, [this] { parts_ = std::make_unique<const ConvexParts>(view_); });
   return parts_->view();
+}
+
+const engine::TreeView& ShapeTree::viewWithUpperNodes() const {
+  std::call_once(upper_once_, [this] {
+    upper_ = upperNodes(view_);
+    view_with_upper_ = view_;
+    if (!upper_.empty()) view_with_upper_.upper = upper_.data();
+  });
+  return view_with_upper_;
 }
 
 const ObbTree* ShapeTree::obbTree() const {

@@ -51,6 +51,8 @@ class ShapeTree {
   const engine::TreeView& view() const { return view_; }
   /// The same, a surface cut into convex parts, which are made when first asked for.
   const engine::TreeView& viewWithParts() const;
+  /// The same, a body of many pieces with the upper nodes that stage 1 goes into, which are made when first asked for.
+  const engine::TreeView& viewWithUpperNodes() const;
   /// Box of the whole in its own frame.
   Eigen::Vector3d lower() const { return Eigen::Vector3f::Map(view_.nodes[0].lo).cast<double>(); }
   Eigen::Vector3d upper() const { return Eigen::Vector3f::Map(view_.nodes[0].hi).cast<double>(); }
@@ -88,9 +90,11 @@ class ShapeTree {
   PackedHulls hulls_;
   engine::TreeView view_;
   std::unique_ptr<const SolidSpace> space_;
-  mutable std::once_flag parts_once_, obb_once_, lss_once_, balls_once_, points_once_;
+  mutable std::once_flag parts_once_, upper_once_, obb_once_, lss_once_, balls_once_, points_once_;
   mutable LineSweptSphere lss_ = {};
   mutable std::unique_ptr<const ConvexParts> parts_;
+  mutable std::vector<engine::UpperNode> upper_;
+  mutable engine::TreeView view_with_upper_;
   mutable std::unique_ptr<const ObbTree> obb_;
   mutable std::unique_ptr<const BallsInMesh> balls_;
   mutable std::unique_ptr<const SurfacePoints> points_;

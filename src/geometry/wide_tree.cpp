@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "geometry/wide_tree.h"
 
+#include <limits>
+
 namespace fcl_artic {
 namespace {
 
@@ -9,21 +11,54 @@ using engine::WideNode;
 
 constexpr std::size_t kChildren = 8;
 
-/// The nodes below `top`, eight at most. As long as there is room, the largest node with children is replaced by its
+/// Bodies of fewer pieces have no upper nodes.
+constexpr std::int32_t kFewestPieces = 64;
+/// Upper nodes end where a node has this number of pieces at most and is smaller than this part of the body. (Where
+/// slivers lie side by side a node is no smaller than one of them: there they go down to single pieces.)
+constexpr std::int32_t kFewPieces = 8;
+constexpr float kSmallNode = 1.0f / 256;
+
+/// Up to eight nodes below `top`. As long as there is room, the largest node that can be divided is replaced by its
 /// children. (Nodes that a dynamic program chooses for the fewest expected visits are visited no less often.)
-std::vector<const Node*> childrenOf(const std::vector<Node>& tree, const Node& top) {
-  std::vector<const Node*> children = {&top};
+template <class CanDivide>
+std::vector<std::int32_t> childrenOf(const Node* tree, std::int32_t top, const CanDivide& canDivide) {
+  std::vector<std::int32_t> children = {top};
   while (children.size() < kChildren) {
-    const Node** largest = nullptr;
-    for (const Node*& node : children) {
-      if (!node->isLeaf() && (!largest || node->radius > (*largest)->radius)) largest = &node;
+    std::int32_t* largest = nullptr;
+    for (std::int32_t& node : children) {
+      if (canDivide(node) && (!largest || tree[node].radius > tree[*largest].radius)) largest = &node;
     }
     if (!largest) break;
-    const Node& node = **largest;
-    *largest = &tree[static_cast<std::size_t>(node.left())];
-    children.push_back(&tree[static_cast<std::size_t>(node.right())]);
+    const Node& node = tree[*largest];
+    *largest = node.left();
+    children.push_back(node.right());
   }
   return children;
+}
+
+void setBox(const Node& node, std::size_t lane, engine::EightBoxes& boxes) {
+  for (int k = 0; k < 3; ++k) {
+    boxes.lo[k][lane] = node.lo[k];
+    boxes.hi[k][lane] = node.hi[k];
+  }
+}
+void setEmpty(std::size_t lane, engine::EightBoxes& boxes) {
+  for (int k = 0; k < 3; ++k) {
+    boxes.lo[k][lane] = std::numeric_limits<float>::infinity();
+    boxes.hi[k][lane] = -std::numeric_limits<float>::infinity();
+  }
+}
+
+/// The number of pieces below each node. (Children come after their parents.)
+std::vector<std::int32_t> countPieces(const engine::TreeView& tree) {
+  std::vector<std::int32_t> count(static_cast<std::size_t>(tree.num_nodes), 1);
+  for (std::int32_t i = tree.num_nodes; i-- > 0;) {
+    const Node& node = tree.nodes[i];
+    if (i == 1 || node.isLeaf()) continue;
+    count[static_cast<std::size_t>(i)] =
+        count[static_cast<std::size_t>(node.left())] + count[static_cast<std::size_t>(node.right())];
+  }
+  return count;
 }
 
 }  // namespace
@@ -31,21 +66,50 @@ std::vector<const Node*> childrenOf(const std::vector<Node>& tree, const Node& t
 std::vector<WideNode> widen(const std::vector<Node>& tree) {
   std::vector<WideNode> wide;
   if (tree.empty()) return wide;
-  std::vector<const Node*> tops = {&tree[0]};  // of wide[i], the node that it stands for
+  const auto canDivide = [&](std::int32_t node) { return !tree[static_cast<std::size_t>(node)].isLeaf(); };
+  std::vector<std::int32_t> tops = {0};  // of wide[i], the node that it stands for
   for (std::size_t i = 0; i < tops.size(); ++i) {
     WideNode node = {};
-    for (const Node* child : childrenOf(tree, *tops[i])) {
+    for (const std::int32_t index : childrenOf(tree.data(), tops[i], canDivide)) {
+      const Node& child = tree[static_cast<std::size_t>(index)];
       const std::int32_t lane = node.num_children++;
-      for (int k = 0; k < 3; ++k) {
-        node.boxes.lo[k][lane] = child->lo[k];
-        node.boxes.hi[k][lane] = child->hi[k];
-      }
-      node.child[lane] = child->isLeaf() ? child->child : static_cast<std::int32_t>(tops.size());
-      if (!child->isLeaf()) tops.push_back(child);
+      setBox(child, static_cast<std::size_t>(lane), node.boxes);
+      node.child[lane] = child.isLeaf() ? child.child : static_cast<std::int32_t>(tops.size());
+      if (!child.isLeaf()) tops.push_back(index);
     }
     wide.push_back(node);
   }
   return wide;
+}
+
+std::vector<engine::UpperNode> upperNodes(const engine::TreeView& tree) {
+  std::vector<engine::UpperNode> upper_nodes;
+  if (tree.num_pieces < kFewestPieces || !(tree.nodes[0].radius < engine::kUnbounded)) return upper_nodes;
+  const std::vector<std::int32_t> pieces = countPieces(tree);
+  const float small = kSmallNode * tree.nodes[0].radius;
+  const auto canDivide = [&](std::int32_t node) {
+    const std::int32_t below = pieces[static_cast<std::size_t>(node)];
+    return below > kFewPieces || (below > 1 && !(tree.nodes[node].radius < small));
+  };
+  std::vector<std::int32_t> tops = {0};  // of upper_nodes[i], the node that it stands for
+  for (std::size_t i = 0; i < tops.size(); ++i) {
+    const std::vector<std::int32_t> children = childrenOf(tree.nodes, tops[i], canDivide);
+    engine::UpperNode upper;
+    for (std::size_t lane = 0; lane < kChildren; ++lane) {
+      upper.node[lane] = upper.upper[lane] = -1;
+      if (lane >= children.size()) {
+        setEmpty(lane, upper.boxes);
+        continue;
+      }
+      upper.node[lane] = children[lane];
+      setBox(tree.nodes[children[lane]], lane, upper.boxes);
+      if (!canDivide(children[lane])) continue;
+      upper.upper[lane] = static_cast<std::int32_t>(tops.size());
+      tops.push_back(children[lane]);
+    }
+    upper_nodes.push_back(upper);
+  }
+  return upper_nodes;
 }
 
 }  // namespace fcl_artic

@@ -15,4 +15,8 @@ namespace fcl_artic {
 /// @return node 0 is the root; empty where `tree` is.
 std::vector<engine::WideNode> widen(const std::vector<engine::Node>& tree);
 
+/// The upper levels of a large body's tree, down to small nodes of few pieces.
+/// @return node 0 is the root's; empty for a body of few pieces, and for an unbounded one.
+std::vector<engine::UpperNode> upperNodes(const engine::TreeView& tree);
+
 }  // namespace fcl_artic

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "model/eight_boxes.h"
 #include "model/piece.h"
 
 namespace fcl_artic {
@@ -23,6 +24,15 @@ struct alignas(32) Node {
   int piece() const { return ~child; }
 };
 
+/// Node of the upper levels of a large body's tree, for stage 1: up to eight children, each of which stands for a node
+/// of the tree. What is below a child lies in its box. The children of one upper node together hold all that is below
+/// the node that it stands for. Node 0 stands for the root.
+struct alignas(64) UpperNode {
+  EightBoxes boxes;       ///< the nodes' own, in the tree's frame; lanes that are not used have empty ones
+  std::int32_t node[8];   ///< the tree's node; -1: the lane is not used
+  std::int32_t upper[8];  ///< the same as an upper node; -1: stage 1 goes no further
+};
+
 /// A body's geometry: constant, shared by threads. Node 0 is the root, node 1 is not used.
 struct TreeView {
   const Node* nodes = nullptr;
@@ -32,6 +42,7 @@ struct TreeView {
   const Piece* outer = nullptr;                ///< one convex piece that holds the whole body; null: none worth having
   const Piece* parts = nullptr;                ///< convex pieces that hold what is below a node each
   const std::int16_t* part_of_node = nullptr;  ///< index into `parts`, -1: none; null: no node has one
+  const UpperNode* upper = nullptr;            ///< of a large body that stands still; null: stage 1 takes it as a whole
   std::int32_t num_nodes = 0, num_pieces = 0;
   double extent = 0;  ///< largest |p|, radii included: the size that pads scale with
 };

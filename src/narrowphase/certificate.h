@@ -60,6 +60,31 @@ FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& stil
   return above | below;
 }
 
+/// What a direction n, fixed in the frame of side.still, says of the moving piece over each lane: the range of n.x over
+/// its core. The same range serves every still piece that it is compared with.
+struct SweptRange {
+  Vec3 n;          ///< unit to 1e-15
+  unsigned lanes;  ///< of which it is known
+  Lanes least, most;
+};
+FCL_ARTIC_INLINE void sweepRange(const Side& side, const Piece& moving, const Vec3& n, unsigned lanes,
+                                 SweptRange& range) {
+  Lanes lower[3], upper[3];
+  movingRange(side, moving, n, lanes, lower, upper);
+  range.n = n;
+  range.lanes = lanes;
+  range.least = min(min(lower[0], lower[1]), lower[2]);
+  range.most = max(max(upper[0], upper[1]), upper[2]);
+}
+/// certainlySeparated() along range.n, of the piece whose range it is.
+FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& still, const Piece& moving,
+                                             const SweptRange& range) {
+  double s_lower, s_upper;
+  coreRange(*side.still, still, range.n, s_lower, s_upper);
+  const double slack = slackOf(side, still, moving);
+  return range.lanes & (greater(range.least, Lanes(s_upper + slack)) | greater(Lanes(s_lower - slack), range.most));
+}
+
 /// A part [0, z] of [0, 1] on which the quadratic with Bernstein coefficients G is certainly positive; up to its first
 /// root, as far as rounding lets that be proven. Its end z is only a guess until de Casteljau's subdivision at z has
 /// shown that the coefficients are not negative. These are the coefficients over [0, z], and over [z, 1] where all of

@@ -23,7 +23,7 @@ namespace {
 const engine::TreeView& viewOf(const ManagedBody& obstacle, const std::vector<ManagedBody>& links) {
   const bool large = std::all_of(links.begin(), links.end(),
                                  [&](const ManagedBody& link) { return 2 * link.size() < obstacle.size(); });
-  return large ? obstacle.shape->view() : obstacle.shape->viewWithParts();
+  return large ? obstacle.shape->viewWithUpperNodes() : obstacle.shape->viewWithParts();
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -6,12 +7,59 @@
 
 #include "geometry/shape_tree.h"
 #include "geometry/wide_tree.h"
+#include "random.h"
 
 namespace wide_tree_test {
 
 using namespace fcl_artic;
 
+using Eigen::Vector3d;
+using engine::Node;
+using engine::Piece;
+using engine::TreeView;
+
 namespace {
+
+constexpr double kRadius = 0.01;
+
+/// A surface that goes up and down, as two triangles a cell, far from the origin.
+std::shared_ptr<const ShapeTree> surface(Random& random, int cells) {
+  const Vector3d centre = std::pow(10.0, uniform(random, -2, 3)) * unit(random);
+  std::vector<Vector3d> points;
+  std::vector<std::array<int, 3>> triangles;
+  for (int i = 0; i <= cells; ++i) {
+    for (int j = 0; j <= cells; ++j) points.push_back(centre + Vector3d(i, j, uniform(random, 0, 3)) / cells);
+  }
+  for (int i = 0; i < cells; ++i) {
+    for (int j = 0; j < cells; ++j) {
+      const int at = i * (cells + 1) + j, next = at + cells + 1;
+      triangles.push_back({at, next, at + 1});
+      triangles.push_back({next, next + 1, at + 1});
+    }
+  }
+  return ShapeTree::fromTriangles(points, triangles);
+}
+
+std::shared_ptr<const ShapeTree> balls(Random& random, int count) {
+  std::vector<Piece> pieces(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    pieces[i].kind = engine::PieceKind::point;
+    pieces[i].primitive = static_cast<std::int32_t>(i);
+    pieces[i].radius = kRadius * uniform(random, 0, 1);
+    Vector3d::Map(pieces[i].center) = unit(random) + Vector3d(5, 0, 0);
+  }
+  return ShapeTree::fromPieces(pieces);
+}
+
+void piecesBelow(const TreeView& tree, int at, std::vector<int>& pieces) {
+  const Node& node = tree.nodes[at];
+  if (node.isLeaf()) {
+    pieces.push_back(node.piece());
+    return;
+  }
+  piecesBelow(tree, node.left(), pieces);
+  piecesBelow(tree, node.right(), pieces);
+}
 
 TEST(WideTree, HoldsEachLeafOnceInBoxesThatHoldIt) {
   std::mt19937 random(12);
@@ -54,6 +102,58 @@ TEST(WideTree, HoldsEachLeafOnceInBoxesThatHoldIt) {
     EXPECT_EQ(parents, std::vector<int>(tree.size(), 1));
   }
   EXPECT_TRUE(widen({}).empty());
+}
+
+TEST(UpperNodes, HoldEachPieceOnce) {
+  Random random(1);
+  int patches = 0;
+  for (const auto& tree : {surface(random, 6), surface(random, 40), balls(random, 64), balls(random, 3000)}) {
+    const TreeView& view = tree->viewWithUpperNodes();
+    ASSERT_EQ(view.nodes, tree->view().nodes);
+    ASSERT_TRUE(view.upper);
+    std::vector<int> seen(static_cast<std::size_t>(view.num_pieces), 0);
+    std::vector<std::int32_t> open = {0};
+    while (!open.empty()) {
+      const engine::UpperNode& upper = view.upper[open.back()];
+      open.pop_back();
+      for (int lane = 0; lane < 8; ++lane) {
+        const std::int32_t at = upper.node[lane];
+        if (at < 0) {
+          EXPECT_EQ(upper.upper[lane], -1);
+          EXPECT_GT(upper.boxes.lo[0][lane], upper.boxes.hi[0][lane]);  // it meets nothing
+          continue;
+        }
+        for (int k = 0; k < 3; ++k) {
+          EXPECT_EQ(upper.boxes.lo[k][lane], view.nodes[at].lo[k]);
+          EXPECT_EQ(upper.boxes.hi[k][lane], view.nodes[at].hi[k]);
+        }
+        std::vector<int> below;
+        piecesBelow(view, at, below);
+        if (upper.upper[lane] >= 0) {  // all of it is below that upper node's children
+          std::vector<int> of_children;
+          for (const std::int32_t child : view.upper[upper.upper[lane]].node) {
+            if (child >= 0) piecesBelow(view, child, of_children);
+          }
+          std::sort(below.begin(), below.end());
+          std::sort(of_children.begin(), of_children.end());
+          EXPECT_EQ(below, of_children);
+          open.push_back(upper.upper[lane]);
+          continue;
+        }
+        ++patches;
+        for (const int piece : below) ++seen[static_cast<std::size_t>(piece)];
+      }
+    }
+    EXPECT_EQ(seen, std::vector<int>(seen.size(), 1));
+  }
+  EXPECT_GT(patches, 700);
+}
+
+TEST(UpperNodes, SmallAndUnboundedBodiesHaveNone) {
+  Random random(3);
+  EXPECT_FALSE(surface(random, 5)->viewWithUpperNodes().upper);
+  EXPECT_FALSE(balls(random, 63)->viewWithUpperNodes().upper);
+  EXPECT_FALSE(ShapeTree::fromPieces({})->viewWithUpperNodes().upper);
 }
 
 }  // namespace

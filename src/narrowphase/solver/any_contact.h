@@ -45,16 +45,18 @@ class AnyContact : PartOfSolver {
   bool tryLikely();
   /// Hulls of a pair overlap, or so it seems, in the middles of these lanes of [0, 1].
   void guessOverlap(PairId pair, unsigned lanes) { overlap_guesses_.push({pair, 0, 0, lanes}); }
+  void guessOverlap(const Entry& e, unsigned lanes) { overlap_guesses_.push({e.pair, e.a, e.b, lanes}); }
   void forgetOverlaps() { overlap_guesses_.clear(); }
   bool tryObstacle(PairId pair, int lane, const Vec3& near, bool thin);
   void considerLinks(PairId pair, Lanes square, double radii);
+  bool tryPatch(const Entry& e);
   const Buffer<std::int32_t>& deepestFirst(const Buffer<Entry>& open);
   bool tryLinks(const Entry& e);
   bool tryOverlaps(Buffer<Entry>& open);
 
  private:
   bool isLeafPair(PairId pair) const;
-  bool restsFromTheStart(PairId pair);
+  bool restsFromTheStart(const Entry& e);
   bool tryLeafPair(PairId pair, int lane);
 
   SweptFrames& frames_;
@@ -157,18 +159,28 @@ inline void AnyContact::considerLinks(PairId pair, Lanes square, double radii) {
   pose_guesses_.push({pair, lane, distance, near});
 }
 
+/// For a link deep in a node of a large body: tries pieces below it in the lane in which it is deepest.
+inline bool AnyContact::tryPatch(const Entry& e) {
+  return proofs_.anyPieces(motions_.of(e.pair, whole()), e.deepest, kMaxBoxPairs, e);
+}
+
 /// Returns the order in which pairs are to be looked at, as indices into `open`. Links deep in each other come first,
 /// the deepest before the others. All other pairs follow as they stand. Empty: all as they stand.
 inline const Buffer<std::int32_t>& AnyContact::deepestFirst(const Buffer<Entry>& open) {
   order_.clear();
   deepest_first_.clear();
-  if (!pose_guesses_.size()) return order_;
-  const auto isDeep = [&](int i) {
+  bool any = pose_guesses_.size() > 0;
+  for (int i = 0; i < open.size() && !any; ++i) any = open[i].deepest >= 0;
+  if (!any) return order_;
+  constexpr double kNotDeep = 1e30;
+  const auto distance = [&](int i) {
+    if (open[i].deepest >= 0) return static_cast<double>(open[i].nearness);
     const PoseGuess* const guess = guessOf(open[i].pair);
-    return guess && guess->isDeep();
+    return guess && guess->isDeep() ? guess->distance : kNotDeep;
   };
+  const auto isDeep = [&](int i) { return distance(i) < kNotDeep; };
   for (int i = 0; i < open.size(); ++i) {
-    if (isDeep(i)) deepest_first_.add(guessOf(open[i].pair)->distance, i);
+    if (isDeep(i)) deepest_first_.add(distance(i), i);
   }
   if (deepest_first_.empty()) return order_;
   while (!deepest_first_.empty()) order_.push(deepest_first_.take());
@@ -183,6 +195,7 @@ inline const Buffer<std::int32_t>& AnyContact::deepestFirst(const Buffer<Entry>&
 /// are deepest.
 /// @param e  only its lanes are tried.
 inline bool AnyContact::tryLinks(const Entry& e) {
+  if (e.deepest >= 0 && (e.mask >> e.deepest & 1)) return tryPatch(e);
   const PoseGuess* const guess = guessOf(e.pair);
   if (!guess) return false;
   frames_.set(whole());
@@ -190,19 +203,22 @@ inline bool AnyContact::tryLinks(const Entry& e) {
     if (balls_.inLinks(e.pair, __builtin_ctz(near))) return true;
   }
   if (!guess->isDeep() || !(e.mask >> guess->lane & 1)) return false;
-  return proofs_.anyTriangles(motions_.of(e.pair, whole()), guess->lane, kMaxBoxPairs);
+  return proofs_.anyTriangles(motions_.of(e.pair, whole()), guess->lane, kMaxBoxPairs, e);
 }
 
 /// Whether a pair whose hulls overlap rests at t = 0, or nearly so: then it may do so at all poses, with many pieces of
 /// which nothing can be proven. (Without it any contact of two arms on their table took 100 us; now 27.)
-inline bool AnyContact::restsFromTheStart(PairId pair) {
-  const Seen seen = motions_.of(pair, whole());
+inline bool AnyContact::restsFromTheStart(const Entry& e) {
+  const Seen seen = motions_.of(e.pair, whole());
   const TreeView &A = seen->a(), &B = seen->b();
   const double shallow = kShallow * seen->smallerRadius();
-  if (isLeafPair(pair) || !A.outer || !B.outer || depthWithin(traversal_.simplexOf(pair)) > shallow) return false;
+  if (A.nodes[e.a].isLeaf() && B.nodes[e.b].isLeaf()) return false;
+  if (e.deep || !NodeHull::exists(A, e.a) || !NodeHull::exists(B, e.b) ||
+      depthWithin(traversal_.simplexOf(e)) > shallow)
+    return false;
   GjkResult g;
   ++statistics().gjk;
-  return abs(restingGap(seen, 0, g)) <= shallow;
+  return abs(restingGap(seen, e, 0, g)) <= shallow;
 }
 
 /// Tries the poses in the middles of the lanes in which hulls overlap, with all pieces.
@@ -216,7 +232,7 @@ inline bool AnyContact::tryOverlaps(Buffer<Entry>& open) {
   const int roots = open.size();
   for (int i = 0; i < overlap_guesses_.size() && !horizon_.isOver(); ++i) {
     const Entry& e = overlap_guesses_[i];
-    if (restsFromTheStart(e.pair)) continue;
+    if (restsFromTheStart(e)) continue;
     traversal_.descend(motions_.of(e.pair, middles), e, Aim::poses, open);
     open.truncate(roots);
   }

@@ -18,7 +18,12 @@ struct Entry {
   unsigned mask;
   bool put_off = false;         ///< not looked at, as contact was suspected before these lanes
   bool within = false;          ///< the one body is within the bounds of the other, a large mesh: hulls say nothing
+  bool deep = false;            ///< a link is deep in this node of a large body: the node's box says nothing
   std::int32_t direction = -1;  ///< of StageOne::direction(); -1: none is known
+  /// Of a patch, and a link deep in it: the lane in which it is deepest, and how near the segment of the link's line
+  /// swept sphere is there, as part of the radius.
+  std::int8_t deepest = -1;
+  float nearness = 1e30f;
 
   bool isWhole() const { return a == 0 && b == 0; }
   /// In a lane of its batch; -1: in any.

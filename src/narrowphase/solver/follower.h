@@ -5,6 +5,7 @@
 #pragma once
 
 #include "narrowphase/solver/entry.h"
+#include "narrowphase/solver/node_shape.h"
 #include "narrowphase/solver/search_state.h"
 
 namespace fcl_artic {
@@ -24,6 +25,7 @@ struct Candidate {
 
   Entry entry;
   Target target;
+  Piece hull_a;                   ///< of a part of body A: NodeHull
   std::int32_t piece_a, piece_b;  ///< of a leaf pair
   std::int32_t first, count;      ///< of a lane of the first batch: its entries on PairSearch's stack
   double t_lower;                 ///< before it the pair is proven free, or is not watched
@@ -46,8 +48,9 @@ struct Candidate {
 /// Returns the piece of a body at GJK's witness. The witness is a weighted mean of vertices of the hull. The piece is
 /// the one whose vertices among these have the largest sum of weights; its box holds the heaviest of them. None: -1,
 /// for instance if the hull's vertices are not the body's own.
-inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool in_a) {
-  if (tree.num_pieces == 1) return 0;
+/// @param below  the node to begin at.
+inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool in_a, int below = 0) {
+  if (tree.nodes[below].isLeaf()) return tree.nodes[below].piece();
   if (tree.pieces[0].kind != PieceKind::vertices || simplex.n == 0) return -1;
   const auto point = [&](int k) { return in_a ? simplex.v[k].a : simplex.v[k].b; };
   int heaviest = 0;
@@ -58,7 +61,7 @@ inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool in_
   int best = -1, count = 1;
   double most = 0;
   constexpr int kDeepest = 64;
-  std::int32_t waiting[kDeepest] = {0};
+  std::int32_t waiting[kDeepest] = {below};
   while (count) {
     const Node& node = tree.nodes[waiting[--count]];
     bool holds = true;
@@ -88,7 +91,7 @@ inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool in_
 
 /// The pieces of a candidate.
 inline PiecePair piecesOf(const Candidate& f, Seen seen) {
-  if (f.isHulls()) return {*seen->a().outer, *seen->b().outer};
+  if (f.isHulls()) return {f.entry.a ? f.hull_a : *seen->a().outer, *seen->b().outer};
   return {seen->a().pieces[f.piece_a], seen->b().pieces[f.piece_b]};
 }
 
@@ -259,8 +262,8 @@ inline bool Follower::followToRoot(Candidate& f, double stop, bool patient, unsi
 /// @return whether contact is proven.
 inline bool Follower::proveAhead(Candidate& f, Seen seen, int lane) {
   const TreeView &A = seen->a(), &B = seen->b();
-  const int piece_a = f.isHulls() ? pieceAtWitness(A, f.simplex, true) : f.piece_a;
-  const int piece_b = f.isHulls() ? pieceAtWitness(B, f.simplex, false) : f.piece_b;
+  const int piece_a = f.isHulls() ? pieceAtWitness(A, f.simplex, true, f.entry.a) : f.piece_a;
+  const int piece_b = f.isHulls() ? pieceAtWitness(B, f.simplex, false, f.entry.b) : f.piece_b;
   if (piece_a < 0 || piece_b < 0) return false;
   ++statistics().contact_proofs;
   const DifferenceBody body = seen->differenceAt(A.pieces[piece_a], B.pieces[piece_b], lane);
@@ -318,11 +321,12 @@ inline bool Follower::prove(Candidate& f) {
 inline void Follower::proveBelowHulls(Candidate& f) {
   if (!f.have_normal) return;
   const TreeView &A = *body(problem().parts(f.entry.pair).a).tree, &B = *body(problem().parts(f.entry.pair).b).tree;
-  if (A.outer->radius + B.outer->radius > f.speed * query().tolerance_time) return;
+  const double radii = (f.entry.a ? f.hull_a : *A.outer).radius + B.outer->radius;
+  if (radii > f.speed * query().tolerance_time) return;
   Candidate below = f;
   below.target = Candidate::Target::leafPair;
-  below.piece_a = pieceAtWitness(A, f.simplex, true);
-  below.piece_b = pieceAtWitness(B, f.simplex, false);
+  below.piece_a = pieceAtWitness(A, f.simplex, true, f.entry.a);
+  below.piece_b = pieceAtWitness(B, f.simplex, false, f.entry.b);
   below.simplex.n = 0;  // its points are the hulls', not the pieces'
   if (below.piece_a >= 0 && below.piece_b >= 0 && prove(below)) f = below;
 }

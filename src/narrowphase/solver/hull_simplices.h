@@ -15,11 +15,12 @@ class HullSimplices {
  public:
   /// A new query: none is known.
   void begin() { ++query_; }
-  /// That of a pair in this query; empty at first.
-  Simplex& of(PairId pair) {
-    Kept& kept = kept_[engine::indexOf(pair) & (kKept - 1)];
-    if (kept.pair != pair || kept.query != query_) {
+  /// That of a pair in this query, or of a node of its body A; empty at first.
+  Simplex& of(PairId pair, std::int32_t node_a) {
+    Kept& kept = kept_[(engine::indexOf(pair) + static_cast<std::size_t>(node_a)) & (kKept - 1)];
+    if (kept.pair != pair || kept.node_a != node_a || kept.query != query_) {
       kept.pair = pair;
+      kept.node_a = node_a;
       kept.query = query_;
       kept.simplex.n = 0;
     }
@@ -30,6 +31,7 @@ class HullSimplices {
   static constexpr int kKept = 32;
   struct Kept {
     PairId pair;
+    std::int32_t node_a;
     std::uint64_t query;
     Simplex simplex;
   };

@@ -53,5 +53,32 @@ inline Piece boxOf(const Node& node) {
   return box;
 }
 
+/// The convex piece that holds what is below a node: the hull around the whole body, a leaf's piece, or, of a large
+/// body, the node's box.
+class NodeHull {
+ public:
+  NodeHull(const TreeView& tree, int node) : piece_(pieceOf(tree, node)) {
+    if (piece_ || !exists(tree, node)) return;
+    box_ = boxOf(tree.nodes[node]);
+    piece_ = &box_;
+  }
+  NodeHull(const NodeHull&) = delete;
+  NodeHull& operator=(const NodeHull&) = delete;
+
+  static bool exists(const TreeView& tree, int node) {
+    return node == 0 ? tree.outer != nullptr : tree.upper != nullptr;
+  }
+  /// There must be one.
+  const Piece& operator*() const { return *piece_; }
+
+ private:
+  static const Piece* pieceOf(const TreeView& tree, int node) {
+    if (node == 0) return tree.outer;
+    return tree.nodes[node].isLeaf() ? tree.pieces + tree.nodes[node].piece() : nullptr;
+  }
+  Piece box_;
+  const Piece* piece_;
+};
+
 }  // namespace FCL_ARTIC_ISA
 }  // namespace fcl_artic

@@ -7,6 +7,7 @@
 
 #include "convex/chord.h"
 #include "convex/contact_proof.h"
+#include "narrowphase/solver/entry.h"
 #include "narrowphase/solver/search_state.h"
 
 namespace fcl_artic {
@@ -59,7 +60,8 @@ class PoseProofs : PartOfSolver {
   bool vertexInside(Seen seen, int lane);
   bool chordPierces(Seen seen, int lane, const Vec3& near);
   bool triangles(Seen seen, int piece_a, int piece_b, int lane);
-  bool anyTriangles(Seen seen, int lane, int max_box_pairs);
+  bool anyTriangles(Seen seen, int lane, int max_box_pairs, const Entry& from);
+  bool anyPieces(Seen seen, int lane, int max_box_pairs, const Entry& from);
   bool leaves(Seen seen, int piece_a, int piece_b, int lane);
 
  private:
@@ -229,21 +231,31 @@ inline bool PoseProofs::triangles(Seen seen, int piece_a, int piece_b, int lane)
 
 /// Tries the triangles of two bodies at a lane's middle: first those in boxes whose middles are near each other.
 /// @param max_box_pairs  as kMaxBoxPairs.
-inline bool PoseProofs::anyTriangles(Seen seen, int lane, int max_box_pairs) {
+/// @param from  the nodes to begin at.
+inline bool PoseProofs::anyTriangles(Seen seen, int lane, int max_box_pairs, const Entry& from) {
   const TreeView &A = seen->a(), &B = seen->b();
   if (A.pieces[0].kind != PieceKind::vertices || B.pieces[0].kind != PieceKind::vertices) return false;
+  return anyPieces(seen, lane, max_box_pairs, from);
+}
+
+/// The same of pieces of all kinds.
+inline bool PoseProofs::anyPieces(Seen seen, int lane, int max_box_pairs, const Entry& from) {
+  const TreeView &A = seen->a(), &B = seen->b();
+  const bool are_triangles = A.pieces[0].kind == PieceKind::vertices && B.pieces[0].kind == PieceKind::vertices;
   const BoxesAtPose boxes(seen->differenceAt(A.pieces[0], B.pieces[0], lane).pose);
   struct NodePair {
     std::int32_t a, b;
   };
   constexpr int kDeepest = 64;
-  NodePair waiting[kDeepest], at = {0, 0};
+  NodePair waiting[kDeepest], at = {from.a, from.b};
   int count = 0;
   for (int left = max_box_pairs; left > 0 && !horizon_.mustEnd();) {
     const Node &x = A.nodes[at.a], &y = B.nodes[at.b];
     if (x.isLeaf() && y.isLeaf()) {
       ++statistics().leaf_tests;
-      if (triangles(seen, x.piece(), y.piece(), lane)) return true;
+      if (are_triangles ? triangles(seen, x.piece(), y.piece(), lane) : leaves(seen, x.piece(), y.piece(), lane)) {
+        return true;
+      }
       left -= kTwoTriangles;
     } else {
       const bool split_a = y.isLeaf() || (!x.isLeaf() && x.radius > y.radius);

@@ -80,10 +80,11 @@ inline double restingGap(const DifferenceBody& hulls, double radii, double shall
   return depthWithin(g.simplex) + radii > shallow ? -kUnknownGap : gapWhereTheyRest(hulls, g.simplex) - radii;
 }
 
-/// The same of a pair's hulls, at the begin of a lane. (In a wide lane the pose is off by what the quadratic leaves
-/// out.)
-inline double restingGap(Seen seen, int lane, GjkResult& g) {
-  const Piece &a = *seen->a().outer, &b = *seen->b().outer;
+/// The same of the hulls around what is below two nodes, at the begin of a lane. (In a wide lane the pose is off by
+/// what the quadratic leaves out.)
+inline double restingGap(Seen seen, const Entry& e, int lane, GjkResult& g) {
+  const NodeHull below_a(seen->a(), e.a), below_b(seen->b(), e.b);
+  const Piece &a = *below_a, &b = *below_b;
   return restingGap(seen->differenceAt(a, b, lane, -1), a.radius + b.radius + seen->margin(),
                     kShallow * seen->smallerRadius(), g);
 }

@@ -7,6 +7,7 @@
 
 #include "model/problem.h"
 #include "motion/rigid_lanes.h"
+#include "narrowphase/solver/swept_box.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
@@ -85,6 +86,55 @@ struct NearestToBox {
   Vec3Lanes direction;  ///< from the box to the segment, of any length
 };
 
+/// A node's box, as stage 1 takes boxes.
+FCL_ARTIC_INLINE CoreBox boxOfNode(const Node& node) {
+  CoreBox box;
+  doublesOf(node.lo).store(box.lo);
+  doublesOf(node.hi).store(box.hi);
+  box.radius = 0;
+  return box;
+}
+
+/// The world as seen from a body's tree frame.
+struct WorldSeen {
+  const Placement& inverse;
+  Vec3Lanes see(const Vec3Lanes& x) const { return Mat3(inverse.R) * x + spread(Vec3(inverse.t)); }
+  /// A direction of the tree frame in the world.
+  Vec3Lanes back(const Vec3Lanes& l) const { return transposed(Mat3(inverse.R)) * l; }
+  Lanes originAlong(const Vec3Lanes& l) const {
+    const Vec3Lanes t = spread(Vec3(inverse.t));
+    Lanes at(0.0);
+    for (int k = 0; k < 3; ++k) at = mulAdd(l[k], t[k], at);
+    return at;
+  }
+  double ulps() const { return inverse.ulps; }
+  double length() const { return inverse.length; }
+};
+/// The tree frame itself.
+struct OwnFrame {
+  const Vec3Lanes& see(const Vec3Lanes& x) const { return x; }
+  const Vec3Lanes& back(const Vec3Lanes& l) const { return l; }
+  Lanes originAlong(const Vec3Lanes&) const { return Lanes(0.0); }
+  double ulps() const { return 0; }
+  double length() const { return 0; }
+};
+
+/// The same line swept sphere as seen from a body's tree frame. Its ends are turned and moved, which errs by less than
+/// the radius grows (doc/NUMERICS.md, "Line swept spheres").
+FCL_ARTIC_INLINE void seeFrom(const Placement& inverse, const SweptLss& s, SweptLss& seen) {
+  seen = s;
+  if (inverse.identity) return;
+  const Mat3 R(inverse.R);
+  for (PointLanes& end : seen.end) {
+    for (Vec3Lanes& c : end.c) c = R * c;
+    end.c[0] = end.c[0] + spread(Vec3(inverse.t));
+  }
+  seen.ulps = s.ulps + inverse.ulps;
+  const double pad = roundingPart(seen.ulps, s.rate) * (s.sizes + inverse.length) + kLeastLength;
+  seen.radius = (s.radius + pad) * (1 + 4 * kUlp);
+  seen.sizes = s.sizes + inverse.length + pad;
+}
+
 /// Lanes in which a link's line swept sphere is certainly more than `margin` from a body that stands still.
 ///
 /// In each lane the direction l goes from the box to the segment as they stand in its middle, in the body's tree frame;
@@ -92,13 +142,13 @@ struct NearestToBox {
 /// y(tau) = R x(tau) + t, have l.y(tau) = (R^T l).x(tau) + l.t, a quadratic that lies above its least Bernstein point;
 /// a point of the segment between them lies above the lesser. So all are apart by that minus h, over |l|, minus both
 /// balls (doc/NUMERICS.md, "Line swept spheres").
-/// @param inverse  the world in the body's tree frame.
-inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Placement& inverse, double margin,
+/// @param frame  how the line swept sphere's frame is seen from the box's.
+template <class Frame>
+inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Frame& frame, double margin,
                                NearestToBox& nearest) {
   Vec3Lanes& l = nearest.direction;
-  const Mat3 R(inverse.R);
-  const Vec3Lanes t = spread(Vec3(inverse.t)), lo = spread(Vec3(box.lo)), hi = spread(Vec3(box.hi));
-  const Vec3Lanes begin = R * s.end[0].c[0] + t, e = R * s.end[1].c[0] + t - begin;
+  const Vec3Lanes lo = spread(Vec3(box.lo)), hi = spread(Vec3(box.hi));
+  const Vec3Lanes begin = frame.see(s.end[0].c[0]), e = frame.see(s.end[1].c[0]) - begin;
   Lanes part(0.5);
   for (int step = 0;; ++step) {
     nearest.point = mulAdd(e, part, begin);
@@ -107,12 +157,10 @@ inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Plac
     if (step == kNearestSteps) break;
     part = min(max(dot(p - begin, e) * s.per_square, Lanes(0.0)), Lanes(1.0));
   }
-  Lanes h(0.0), at(0.0);
-  for (int k = 0; k < 3; ++k) {
-    h = h + max(l[k] * lo[k], l[k] * hi[k]);
-    at = mulAdd(l[k], t[k], at);
-  }
-  const Vec3Lanes u = transposed(R) * l;
+  Lanes h(0.0);
+  for (int k = 0; k < 3; ++k) h = h + max(l[k] * lo[k], l[k] * hi[k]);
+  const Lanes at = frame.originAlong(l);
+  const Vec3Lanes u = frame.back(l);
   Lanes least[2];
   for (int end = 0; end < 2; ++end) {
     const Vec3Lanes* c = s.end[end].c;
@@ -120,7 +168,7 @@ inline unsigned certainlyApart(const SweptLss& s, const CoreBox& box, const Plac
   }
   double extent = box.radius + margin;
   for (int k = 0; k < 3; ++k) extent += max(abs(box.lo[k]), abs(box.hi[k]));
-  const double pad = roundingPart(s.ulps + inverse.ulps, s.rate) * (s.sizes + inverse.length + extent) + kLeastLength;
+  const double pad = roundingPart(s.ulps + frame.ulps(), s.rate) * (s.sizes + frame.length() + extent) + kLeastLength;
   nearest.square = dot(l, l);
   const unsigned known = greater(nearest.square, Lanes(kLeastSquare));
   return known &

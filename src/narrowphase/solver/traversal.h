@@ -10,6 +10,7 @@
 #include "narrowphase/solver/hull_simplices.h"
 #include "narrowphase/solver/node_shape.h"
 #include "narrowphase/solver/pose_proofs.h"
+#include "narrowphase/solver/swept_ranges.h"
 #include "narrowphase/swept_difference.h"
 
 namespace fcl_artic {
@@ -67,6 +68,7 @@ struct DirectionSearch {
   int max_overlaps;  ///< number of lanes with overlap at the middle that ends the search
   Simplex& last;     ///< GJK begins with it, and leaves there the one that it ends with
   LaneSearch lanes = {};
+  SweptRanges* ranges = nullptr;  ///< of a patch and a body's hull: keeps the directions that are found
 };
 
 /// One pair over one batch, in the live lanes of Horizon's batch.
@@ -86,7 +88,7 @@ class Traversal : PartOfSolver {
   }
   /// Nodes of a pair's still body, a bit each, that are proven free over the whole motion (engine::CullCandidate).
   void knowFreeNodes(PairId pair, const std::uint64_t* nodes) { free_nodes_.push({pair, nodes}); }
-  Simplex& simplexOf(PairId pair) { return simplices_.of(pair); }
+  Simplex& simplexOf(const Entry& e) { return simplices_.of(e.pair, e.a); }
 
   /// Lanes of `mask` in which two nodes' boxes are not certainly apart.
   unsigned nodesMayTouch(Seen seen, int a, int b, unsigned mask);
@@ -98,7 +100,7 @@ class Traversal : PartOfSolver {
     bool within;        ///< Entry::within
     unsigned overlaps;  ///< lanes at whose middles GJK claims that they overlap
   };
-  HullTest hullsMayTouch(Seen seen, unsigned mask, bool suspect, LaneSearch search);
+  HullTest hullsMayTouch(Seen seen, const Entry& e, bool suspect, LaneSearch search);
 
   /// Goes down from a pair of nodes in the lanes of `mask`. Entries that stay undecided are appended to `open`.
   void descend(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open);
@@ -129,6 +131,7 @@ class Traversal : PartOfSolver {
 
   HullSimplices simplices_;
   EffortThrottle rods_throttle_;
+  SweptRanges ranges_;
   struct FreeNodes {
     PairId pair;
     const std::uint64_t* nodes;
@@ -203,12 +206,17 @@ inline unsigned Traversal::notSeparated(Seen seen, const PiecePair& pieces, unsi
   const bool whole_lanes = search.lanes.wanted && pieces.areBounded();
   const Vec3Lanes* const towards = search.lanes.towards;
   const double slack = whole_lanes ? slackOf(seen->side(0), a, b) : 0;
+  const auto separatedAlong = [&](const Vec3& n) {  // of A's frame
+    if (!search.ranges) return separated(seen->side(0), a, b, n, mask);
+    ++statistics().certificates;
+    return search.ranges->add(seen, a, n, mask);
+  };
   const auto separatesWhole = [&](int lane) {
     GjkResult g;
     searchNearest(SweptDifference(seen->side(0), a, b, lane), guess, {kWitnessAccuracy, slack, 48, slack}, g);
     ++statistics().gjk;
     if (!(g.lower > slack)) return false;
-    mask &= ~separated(seen->side(0), a, b, g.n, mask);
+    mask &= ~separatedAlong(g.n);
     return !(mask >> lane & 1);
   };
   for (int left = search.max_overlaps; left > 0 && (untried &= horizon_.live() & ~horizon_.contactLane()) != 0;
@@ -240,7 +248,7 @@ inline unsigned Traversal::notSeparated(Seen seen, const PiecePair& pieces, unsi
     const Vec3 n = body.opposite(g.n);
     const int first = a.num_vertices > b.num_vertices ? 0 : 1;
     for (int i = 0; i < 2 && mask; ++i) {
-      mask &= ~((first + i) & 1 ? separated(seen->side(1), b, a, n, mask) : separated(seen->side(0), a, b, g.n, mask));
+      mask &= ~((first + i) & 1 ? separated(seen->side(1), b, a, n, mask) : separatedAlong(g.n));
     }
     if (whole_lanes && !towards && (mask >> lane & 1)) separatesWhole(lane);
   }
@@ -269,17 +277,22 @@ inline bool Traversal::isWithin(Seen seen) {
   return false;
 }
 
-/// Tests the hulls of two bodies. Most pairs of neighbours need no more, before any of their triangles is looked at.
+/// Tests the hulls of two bodies, or of a patch and a body. Most pairs of neighbours need no more, before any of their
+/// triangles is looked at.
 /// @param suspect  overlapping hulls count as suspected contact.
-inline Traversal::HullTest Traversal::hullsMayTouch(Seen seen, unsigned mask, bool suspect, LaneSearch search) {
+inline Traversal::HullTest Traversal::hullsMayTouch(Seen seen, const Entry& e, bool suspect, LaneSearch search) {
   const TreeView &A = seen->a(), &B = seen->b();
-  if (A.num_pieces == 1 && B.num_pieces == 1)
-    return {provesAny() ? leavesMayTouch(seen, 0, 0, mask, true) : mask, false, 0};
-  if (!A.outer || !B.outer) return {mask, false, 0};
-  if (isWithin(seen)) return {mask, true, 0};
-  unsigned overlaps = 0;
-  const DirectionSearch of_hulls = {kMaxHullOverlaps, simplexOf(seen->pair()), search};
-  mask = notSeparated(seen, {*A.outer, *B.outer}, mask, of_hulls, [&](int lane) {
+  const Node &x = A.nodes[e.a], &y = B.nodes[e.b];
+  if (x.isLeaf() && y.isLeaf())
+    return {provesAny() ? leavesMayTouch(seen, x.piece(), y.piece(), e.mask, true) : e.mask, false, 0};
+  if (e.deep || !NodeHull::exists(A, e.a) || !NodeHull::exists(B, e.b)) return {e.mask, false, 0};
+  const NodeHull a(A, e.a), b(B, e.b);
+  if (e.isWhole() && isWithin(seen)) return {e.mask, true, 0};
+  unsigned mask = e.mask, overlaps = 0;
+  SweptRanges* const ranges = e.a != 0 && e.b == 0 ? &ranges_ : nullptr;
+  if (ranges && !(mask &= ~ranges->separate(seen, *a, mask, statistics().certificates))) return {0, false, 0};
+  const DirectionSearch of_hulls = {kMaxHullOverlaps, simplexOf(e), search, ranges};
+  mask = notSeparated(seen, {*a, *b}, mask, of_hulls, [&](int lane) {
     overlaps |= 1u << lane;
     if (provesAny() && proofs_.vertexInside(seen, lane)) return;
     if (suspect) horizon_.suspect(seen->batch().at[lane]);
@@ -291,8 +304,9 @@ inline Traversal::HullTest Traversal::hullsMayTouch(Seen seen, unsigned mask, bo
 /// into convex parts by them.
 inline unsigned Traversal::partsMayTouch(Seen seen, int a, int b, unsigned mask) {
   const auto part = [](const TreeView& tree, int node, const TreeView& other) -> const Piece* {
-    const bool whole = tree.num_pieces == 1 ||
-                       (node == 0 && (tree.parts || tree.nodes[0].radius < kLargerNode * other.nodes[0].radius));
+    const bool whole =
+        tree.num_pieces == 1 ||
+        (node == 0 && ((tree.parts && !tree.upper) || tree.nodes[0].radius < kLargerNode * other.nodes[0].radius));
     if (whole) return tree.outer;
     return tree.part_of_node && tree.part_of_node[node] >= 0 ? tree.parts + tree.part_of_node[node] : nullptr;
   };
@@ -339,7 +353,7 @@ inline void Traversal::descend(Seen seen, const Entry& root, Aim aim, Buffer<Ent
 inline unsigned Traversal::blockedLanes(Seen seen, unsigned mask) {
   FCL_ARTIC_ASSERT(horizon_.live() == kAllLanes && horizon_.contactLane() == 0);  // all are looked at
   mask = nodesMayTouch(seen, 0, 0, mask);
-  if (mask) mask = hullsMayTouch(seen, mask, false, {}).mask;
+  if (mask) mask = hullsMayTouch(seen, {seen->pair(), 0, 0, mask}, false, {}).mask;
   return mask ? traverse(seen, {seen->pair(), 0, 0, mask}, Aim::freeLanes, undecided_) : 0;
 }
 
