@@ -60,8 +60,8 @@ FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& stil
   return above | below;
 }
 
-/// What a direction n, fixed in the frame of side.still, says of the moving piece over each lane: the range of n.x over
-/// its core. The same range serves every still piece that it is compared with.
+/// The range of n.x over the moving piece's core in each lane, for a direction n that is fixed in the frame of
+/// side.still. The same range serves every still piece that it is compared with.
 struct SweptRange {
   Vec3 n;          ///< unit to 1e-15
   unsigned lanes;  ///< of which it is known

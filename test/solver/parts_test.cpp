@@ -385,18 +385,20 @@ TEST(BallProofs, BallsInLinksMeetAndNeitherLinkIsWithinTheOther) {
   EXPECT_EQ(world.balls.ballReach(TwoBalls::kPair), 0);
 }
 
-TEST(HullSimplices, AreOfThePairAndTheQuery) {
+TEST(HullSimplices, AreOfThePairItsNodeAndTheQuery) {
   HullSimplices simplices;
   simplices.begin();
-  EXPECT_EQ(simplices.of(PairId{3}).n, 0);
-  simplices.of(PairId{3}).n = 2;
-  EXPECT_EQ(simplices.of(PairId{4}).n, 0);
-  EXPECT_EQ(simplices.of(PairId{3}).n, 2);
-  EXPECT_EQ(simplices.of(PairId{3 + 32}).n, 0);  // pushes the other out
-  EXPECT_EQ(simplices.of(PairId{3}).n, 0);
-  simplices.of(PairId{3}).n = 2;
+  EXPECT_EQ(simplices.of(PairId{3}, 0).n, 0);
+  simplices.of(PairId{3}, 0).n = 2;
+  EXPECT_EQ(simplices.of(PairId{4}, 0).n, 0);
+  EXPECT_EQ(simplices.of(PairId{3}, 0).n, 2);
+  EXPECT_EQ(simplices.of(PairId{3}, 2).n, 0);  // another node of the same body
+  EXPECT_EQ(simplices.of(PairId{3}, 0).n, 2);
+  EXPECT_EQ(simplices.of(PairId{3 + 32}, 0).n, 0);  // pushes the other out
+  EXPECT_EQ(simplices.of(PairId{3}, 0).n, 0);
+  simplices.of(PairId{3}, 0).n = 2;
   simplices.begin();
-  EXPECT_EQ(simplices.of(PairId{3}).n, 0);
+  EXPECT_EQ(simplices.of(PairId{3}, 0).n, 0);
 }
 
 TEST(PoseProofs, ProveContactWhereItIs) {

@@ -20,8 +20,8 @@ struct Entry {
   bool within = false;          ///< the one body is within the bounds of the other, a large mesh: hulls say nothing
   bool deep = false;            ///< a link is deep in this node of a large body: the node's box says nothing
   std::int32_t direction = -1;  ///< of StageOne::direction(); -1: none is known
-  /// Of a patch, and a link deep in it: the lane in which it is deepest, and how near the segment of the link's line
-  /// swept sphere is there, as part of the radius.
+  /// The lane in which a link is deepest in this patch; -1: it is not deep, or nobody asks. And the distance there from
+  /// the segment of the link's line swept sphere, as part of its radius.
   std::int8_t deepest = -1;
   float nearness = 1e30f;
 

@@ -10,6 +10,7 @@
 //    (swept_difference.h), between a link and an obstacle from stage 1's direction on, and witnesses at the middle. If
 //    GJK claims an overlap in a part, contact is suspected there, and later parts are put off (Horizon::suspect()). If
 //    the suspicion proves wrong, lookAtPutOff() examines them.
+//    Each patch of a large body is tested by itself: its piece, or its box, against the link's hull.
 // 2. search(): a problem of one pair, as the drop-in asks it, is followed from its first open part to its last at
 //    once. For many pairs descendIntoPieces() traverses their trees over the first batch, and solveLane() takes the
 //    parts one after the other.
