@@ -41,14 +41,16 @@ class Rotation {
 
   /// The identity.
   Rotation() = default;
-  /// The proper rotation next to R; R itself where it is orthonormal to rounding already.
+  /// The proper rotation next to R; R itself where it is orthonormal to rounding already, as is each matrix that this
+  /// function has returned in the same rounding mode.
   /// @param most  what each entry of 1 - R^T R may be off 0 by, 1e-4 at most.
   /// @return none where one is off by more, or is not a number, or R is a reflection.
   static std::optional<Rotation> within12Ulps(Eigen::Matrix3d R, double most) {
     Eigen::Matrix3d defect = orthonormalityDefect(R);
     if (!((defect.array().abs() <= most).all() && R.determinant() > 0)) return std::nullopt;
-    for (int round = 0; round < 3 && !(defect.cwiseAbs().maxCoeff() <= 4e-16); ++round) {
-      R += 0.5 * R * defect;  // Newton's iteration: squares the defect
+    for (int round = 0; !(defect.cwiseAbs().maxCoeff() <= 4e-16); ++round) {
+      if (round == kRounds) return Rotation(firstOfCircle(R));
+      R = step(R, defect);
       defect = orthonormalityDefect(R);
     }
     return Rotation(R);
@@ -69,6 +71,15 @@ class Rotation {
 
  private:
   explicit Rotation(const Eigen::Matrix3d& R) : R_(R) {}
+
+  /// Three rounds do, but for one matrix of 70,000. After that many the others are orthonormal to rounding, or go in
+  /// circles of a few matrices.
+  static constexpr int kRounds = 64;
+  /// Newton's iteration: squares the defect.
+  static Eigen::Matrix3d step(const Eigen::Matrix3d& R, const Eigen::Matrix3d& defect) { return R + 0.5 * R * defect; }
+  /// The first matrix, in the order of numbers, of the circle that R is on. It is the same one for all matrices of the
+  /// circle.
+  static Eigen::Matrix3d firstOfCircle(const Eigen::Matrix3d& R);
 
   Eigen::Matrix3d R_ = Eigen::Matrix3d::Identity();
 };

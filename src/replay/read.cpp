@@ -175,9 +175,11 @@ class Builder {
   std::vector<std::shared_ptr<fcl::CollisionGeometryd>> geometries_;
 };
 
+/// (A robot without variables has no rows, in which columns would show.)
 JointMotion motionOf(const KinematicTree& tree, const MotionRecord& record) {
+  const bool none = tree.dof() == 0 && record.coefficients.rows() == 0;
   return ExactMotion::motion(
-      tree, record.coefficients,
+      tree, none ? Eigen::MatrixXd(0, 1) : record.coefficients,
       Eigen::VectorXd::Map(record.references.data(), static_cast<Eigen::Index>(record.references.size())));
 }
 

@@ -57,13 +57,13 @@ class Recorder {
     return body.isObstacle() ? "obstacle '" + body.name + "'" : "geometry of link '" + body.name + "'";
   }
 
-  /// A rotation that was made orthonormal, and an axis that was given the length 1, are mostly taken as they are when
-  /// they are given again. One of 60,000 rotations is rounded once more (Rotation::within12Ulps()), and answers may
-  /// differ then.
+  /// A rotation that was made orthonormal, and an axis that was given the length 1, are taken as they are when they are
+  /// given again. In another rounding mode they may be rounded once more, and answers may differ then.
   static void requireExact(bool exact, const std::string& what) {
     if (exact) return;
-    throw std::invalid_argument("writeQuery: the rotation or axis of " + what +
-                                " would be rounded once more when it is read; change it by 1e-15");
+    throw std::invalid_argument(
+        "writeQuery: the rotation or axis of " + what +
+        " would be rounded once more when it is read; set the rounding mode that it was made in");
   }
   void requireSameTree() const {
     const KinematicTree again = treeOf(record_.robot);

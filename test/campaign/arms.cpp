@@ -6,7 +6,6 @@
 
 #include "checks.h"
 #include "generator.h"
-#include "scene_file.h"
 
 namespace campaign {
 namespace {
@@ -25,20 +24,19 @@ bool freeAtEnd(const Oracle& oracle) {
   return true;
 }
 
-/// A file of this scene (scene_file.h), and remarks on it.
 std::string describe(const Asked& asked) {
-  std::string words = toText({asked.scene});
+  std::string words;
   for (const PairTruth& p : asked.truth().pairs) {
     const char* verdict = p.hit ? "hit" : p.doubtful ? "doubtful" : "free";
-    words += format("# oracle %d %d: %s t %.17g gap %.6g at %.17g\n", p.a, p.b, verdict, p.time, p.gap, p.gap_time);
+    words += format("oracle %d %d: %s t %.17g gap %.6g at %.17g\n", p.a, p.b, verdict, p.time, p.gap, p.gap_time);
   }
   for (const Answer& answer : asked.answers) {
     static constexpr const char* kVerdicts[] = {"free", "contact", "undecided"};
     const CertifiedResult& r = answer.result;
-    words += format("# answer %s [%.17g, %.17g]%s in %.1f us\n", kVerdicts[static_cast<int>(r.status)], r.t_lower,
+    words += format("answer %s [%.17g, %.17g]%s in %.1f us\n", kVerdicts[static_cast<int>(r.status)], r.t_lower,
                     r.t_upper, r.certain ? " certain" : "", answer.elapsed_us);
     for (const fcl_artic::CertifiedContact& c : r.contacts) {
-      words += format("#  %d/%ld %d/%ld [%.17g, %.17g]%s point %.9g %.9g %.9g normal %.9g %.9g %.9g\n",
+      words += format("  %d/%ld %d/%ld [%.17g, %.17g]%s point %.9g %.9g %.9g normal %.9g %.9g %.9g\n",
                       answer.bodyOf(c.body1.object), static_cast<long>(c.b1), answer.bodyOf(c.body2.object),
                       static_cast<long>(c.b2), c.t_lower, c.t_upper, c.certain ? " certain" : "", c.point.x(),
                       c.point.y(), c.point.z(), c.normal.x(), c.normal.y(), c.normal.z());
@@ -111,7 +109,8 @@ Draw drawAnd(std::function<void(Scene& scene)> change) {
 
 Campaign campaignOf(Arms arms) {
   const auto number = arms.number;
-  return {families(), number, [arms = std::move(arms)](Case& c) {
+  return {families(), number,
+          [arms = std::move(arms)](Case& c) {
             const auto begin = Clock::now();
             Asked asked(c.id.seed);
             arms.draw(asked, c);
@@ -120,12 +119,14 @@ Campaign campaignOf(Arms arms) {
             for (const Way& way : arms.ways) {
               fcl_artic::CertifiedRequest request = asked.question.request;
               way(request, asked.random);
+              c.query([&] { return asked.question.manager->writeQuery(*asked.question.motion, request); });
               asked.answers.push_back(ask(asked.question, request));
               c.tally.note("query, us", asked.answers.back().elapsed_us);
             }
             if (c.words) *c.words += describe(asked);
             for (const Judge& judge : arms.judges) judge(asked, c);
-          }};
+          },
+          "arms"};
 }
 
 }  // namespace campaign

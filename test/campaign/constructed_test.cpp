@@ -5,8 +5,8 @@
 
 #include "checks.h"
 #include "constructed.h"
+#include "expect.h"
 #include "random.h"
-#include "scene_file.h"
 
 namespace campaign {
 namespace constructed_test {
@@ -31,9 +31,11 @@ TEST_P(ConstructedContact, IsBracketedAtItsPointAndNormal) {
   for (std::uint64_t i = 0; i < kCasesEach; ++i) {
     Constructed c = constructContact(contact, chain, Random::mix(4, i));
     if (i % 2) c.scene.tolerance_time = 1e-9;
-    SCOPED_TRACE(toText({c.scene}));
     const Oracle oracle(c.scene);
-    const Answer answer = ask(c.scene);
+    const Question question = prepare(c.scene);
+    const QueryOfExpectations file("constructed-" + contact + "-" + chain + "-" + std::to_string(i),
+                                   [&] { return question.manager->writeQuery(*question.motion, question.request); });
+    const Answer answer = ask(question, question.request);
     const CertifiedResult& r = answer.result;
     ASSERT_EQ(r.status, Status::contact);
     EXPECT_LE(r.t_lower, c.time + kFloor) << "late by " << r.t_lower - c.time;

@@ -105,9 +105,4 @@ Answer ask(const Question& question, const fcl_artic::CertifiedRequest& request)
   return answer;
 }
 
-Answer ask(const Scene& scene) {
-  const Question question = prepare(scene);
-  return ask(question, question.request);
-}
-
 }  // namespace campaign

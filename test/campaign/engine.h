@@ -34,7 +34,6 @@ Question prepare(const Scene& scene);
 
 /// Asks the library through its public interface. The only place of these campaigns that links to it.
 Answer ask(const Question& question, const fcl_artic::CertifiedRequest& request);
-Answer ask(const Scene& scene);
 
 /// The tree and motion of a scene, in the library's types.
 std::shared_ptr<const fcl_artic::KinematicTree> treeOf(const Scene& scene);

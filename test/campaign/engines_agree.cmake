@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The engines of all instruction sets that this machine runs answer the campaign's questions alike: verdicts are the same,
 # and the bits of those that fuse multiplication and addition (avx2, avx512, neon), and of those that don't (portable,
-# sse2). The first of them draws the scenes, the others are asked about its.
+# sse2). The first of them draws the scenes, the others are asked its queries.
 #   cmake -D CAMPAIGN=... -D SETS=portable|sse2|... -D QUERIES=... -D SEED=... -D WORK=... -P engines_agree.cmake
 string(REPLACE "|" ";" SETS "${SETS}")
 file(MAKE_DIRECTORY ${WORK})
@@ -9,11 +9,11 @@ set(ran 0)
 foreach(set IN LISTS SETS)
   set(file ${WORK}/${set}.txt)
   file(REMOVE ${file})
-  set(scenes --queries ${QUERIES} --seed ${SEED} --write-scenes ${WORK}/scenes.txt)
+  set(queries --queries ${QUERIES} --seed ${SEED} --record ${WORK}/queries.txt)
   if(ran GREATER 0)
-    set(scenes --scenes ${WORK}/scenes.txt)
+    set(queries --recorded ${WORK}/queries.txt)
   endif()
-  execute_process(COMMAND ${CMAKE_COMMAND} -E env FCL_ARTIC_ISA=${set} ${CAMPAIGN} --unjudged ${scenes}
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env FCL_ARTIC_ISA=${set} ${CAMPAIGN} --unjudged ${queries}
     --answers ${file} RESULT_VARIABLE status OUTPUT_VARIABLE said ERROR_VARIABLE said)
   if(NOT said MATCHES "instruction set: ${set}\n")
     message("${set}: not on this processor")

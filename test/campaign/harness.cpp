@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <chrono>
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
+#include <fstream>
 #include <mutex>
 #include <thread>
 
@@ -32,6 +35,37 @@ void lookAt(const Campaign& campaign, Case& c) {
   std::map<std::string, int> seen;
   for (const Finding& f : c.findings)
     if (++seen[f.fault] == 1) c.tally.fault(f.fault);
+}
+
+std::string nameOf(const Campaign& campaign, const CaseId& id) {
+  std::string name = campaign.name.empty() ? "case" : campaign.name;
+  if (!id.family.empty()) name += "-" + id.family;
+  return name + "-" + std::to_string(id.seed);
+}
+
+/// Looks at a failed case once more, so that it writes its queries, and says how they are asked again.
+std::string writeQueries(const Campaign& campaign, const Failure& failure, const std::string& folder) {
+  Tally unused;
+  QueryFiles files(folder, nameOf(campaign, failure.id));
+  Case c{failure.index, failure.id, false, unused, {}, nullptr, &files};
+  lookAt(campaign, c);
+  return files.lines();
+}
+
+/// Failure::words of all.
+void describe(const Campaign& campaign, const std::string& folder, std::vector<Failure>& failures) {
+  constexpr int kOfEachKind = 8;
+  std::map<std::string, int> shown;
+  for (Failure& f : failures) {
+    const std::string family = f.id.family.empty() ? "" : "--class " + f.id.family + " ";
+    for (const Finding& finding : f.findings) {
+      if (++shown[finding.fault] > kOfEachKind) continue;
+      f.words += format("case %llu, %s--replay %llu: %s: ", static_cast<unsigned long long>(f.index), family.c_str(),
+                        static_cast<unsigned long long>(f.id.seed), finding.fault.c_str()) +
+                 finding.text + "\n";
+    }
+    if (!f.words.empty() && !folder.empty()) f.words += writeQueries(campaign, f, folder);
+  }
 }
 
 int widthOf(const std::string& column) {
@@ -81,6 +115,40 @@ std::string format(const char* text, ...) {
   std::vsnprintf(line, sizeof line, text, arguments);
   va_end(arguments);
   return line;
+}
+
+std::string QueryFiles::usualFolder() {
+  const char* wanted = std::getenv("FCL_ARTIC_FAILED_CASES");
+  return wanted ? wanted : "failed_cases";
+}
+
+QueryFiles::QueryFiles(std::string folder, const std::string& name) : folder_(std::move(folder)), name_(name) {
+  for (char& c : name_)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
+}
+
+void QueryFiles::add(const std::function<std::string()>& text) {
+  ++queries_;
+  try {
+    const std::string query = text();
+    std::filesystem::create_directories(folder_);
+    const std::string file =
+        (std::filesystem::path(folder_) / (name_ + "-" + std::to_string(queries_) + ".json")).string();
+    if (!(std::ofstream(file, std::ios::binary) << query << std::flush))
+      throw std::runtime_error("can't write " + file);
+    lines_ += "  fcl_artic check --replay " + file + "\n";
+  } catch (const std::exception& e) {
+    const std::string line = std::string("  no replay file: ") + e.what() + "\n";
+    if (lines_.find(line) == std::string::npos) lines_ += line;
+  }
+}
+
+std::string QueryFiles::lines() const {
+  return queries_ > 0 ? lines_ : "  no replay file: the case has asked no query\n";
+}
+
+void Case::queryWithoutFile(const std::string& reason) {
+  query([&]() -> std::string { throw std::invalid_argument(reason); });
 }
 
 void Tally::mutant(const std::string& name, double share, bool applied, bool seen) {
@@ -138,7 +206,7 @@ Report run(const Campaign& campaign, const Options& options) {
   Report report;
   std::mutex mutex;
   std::atomic<std::uint64_t> next{0};
-  std::vector<std::pair<std::uint64_t, Failure>> failures;
+  std::vector<Failure> failures;
   const auto work = [&] {
     std::map<std::string, Tally> tallies;
     for (std::uint64_t i; (i = next++) < options.cases;) {
@@ -148,7 +216,7 @@ Report run(const Campaign& campaign, const Options& options) {
       lookAt(campaign, c);
       if (!c.findings.empty()) {
         const std::lock_guard<std::mutex> lock(mutex);
-        failures.push_back({i, {id, std::move(c.findings)}});
+        failures.push_back({i, id, std::move(c.findings), {}});
       }
       if (options.progress) options.progress(i + 1);
     }
@@ -163,17 +231,20 @@ Report run(const Campaign& campaign, const Options& options) {
   for (std::thread& t : threads) t.join();
   report.elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (const auto& [family, tally] : report.families) report.total.add(tally);
-  std::sort(failures.begin(), failures.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  for (std::size_t i = 0; i < failures.size() && i < 1000; ++i)
-    report.failures.push_back(std::move(failures[i].second));
+  std::sort(failures.begin(), failures.end(), [](const auto& a, const auto& b) { return a.index < b.index; });
+  failures.resize(std::min<std::size_t>(failures.size(), 1000));
+  describe(campaign, options.folder, failures);
+  report.failures = std::move(failures);
   return report;
 }
 
-bool replay(const Campaign& campaign, const CaseId& id, std::string& words) {
+bool replay(const Campaign& campaign, const CaseId& id, const std::string& folder, std::string& words) {
   Tally tally;
-  Case c{0, id, false, tally, {}, &words};
+  QueryFiles files(folder, nameOf(campaign, id));
+  Case c{0, id, false, tally, {}, &words, folder.empty() ? nullptr : &files};
   lookAt(campaign, c);
-  for (const Finding& f : c.findings) words += "# FAULT " + f.fault + ": " + f.text + "\n";
+  for (const Finding& f : c.findings) words += "FAULT " + f.fault + ": " + f.text + "\n";
+  if (!folder.empty()) words += files.lines();
   return c.findings.empty();
 }
 
@@ -188,17 +259,7 @@ std::string toText(const Report& report) {
   out += row("all", report.total, report.total) + details(report.total);
   out += format("%.1f s, %.0f cases/s\n", report.elapsed_s,
                 static_cast<double>(report.total["cases"]) / std::max(1e-9, report.elapsed_s));
-  // The first few of each kind, as one kind can be much more frequent than a worse one.
-  std::map<std::string, int> shown;
-  for (const Failure& f : report.failures) {
-    const std::string family = f.id.family.empty() ? "" : "--class " + f.id.family + " ";
-    for (const Finding& finding : f.findings) {
-      if (++shown[finding.fault] > 8) continue;
-      out += format("%s--replay %llu: %s: ", family.c_str(), static_cast<unsigned long long>(f.id.seed),
-                    finding.fault.c_str()) +
-             finding.text + "\n";
-    }
-  }
+  for (const Failure& f : report.failures) out += f.words;
   return out;
 }
 

@@ -4,7 +4,8 @@
 // its answers.
 //
 //   case    is made from its class and its seed, and from nothing else: a finding names both, and `campaign --replay`
-//           makes the case again.
+//           makes the case again. Queries of a case that fails become files, which `fcl_artic check --replay` asks
+//           again.
 //   way     asks the library about a case (its method, its mode, stage 2, another call).
 //   judge   looks at the answers and reports each fault by Case::fault().
 //   mutant  is a fault put into an answer on purpose; the judge has to see it, or it would see no other.
@@ -90,6 +91,29 @@ struct CaseId {
   std::uint64_t seed = 0;
 };
 
+/// Queries as files, which `fcl_artic check --replay` asks again.
+class QueryFiles {
+ public:
+  /// Where the environment says (FCL_ARTIC_FAILED_CASES), else below the present folder.
+  static std::string usualFolder();
+  /// @param folder  is made where there is something to write.
+  /// @param name    begins the files' names; a sign that no name should have becomes "_".
+  QueryFiles(std::string folder, const std::string& name);
+
+  /// Writes a query to a file of its own.
+  /// @param text  returns what ArticulatedCollisionManager::writeQuery() does, or throws why there is none.
+  void add(const std::function<std::string()>& text);
+  /// A line for each query: how it is asked again, or why it can't be (each reason once).
+  std::string lines() const;
+
+ private:
+  std::string folder_, name_, lines_;
+  int queries_ = 0;
+};
+
+/// Why no file holds the query of two bodies.
+inline constexpr char kTwoBodies[] = "two bodies are no query of a robot's manager";
+
 struct Options {
   std::uint64_t cases = 0;
   std::uint64_t seed = 1;
@@ -97,6 +121,7 @@ struct Options {
   std::string family;    ///< only this class; empty: all, in their shares
   bool mutants = false;  ///< besides, spoils a copy of each answer by each mutant, and counts what the judge sees
   std::function<void(std::uint64_t done)> progress;  ///< called by any thread
+  std::string folder = QueryFiles::usualFolder();    ///< gets the queries of cases that fail; empty: none
 };
 
 /// One case, while its campaign looks at it.
@@ -107,7 +132,14 @@ struct Case {
   Tally& tally;
   std::vector<Finding> findings;
   std::string* words = nullptr;  ///< takes a description, where the case is replayed
+  QueryFiles* files = nullptr;   ///< takes the queries, where the case has failed
 
+  /// A query that is about to be asked; `text` as QueryFiles::add() has it.
+  void query(const std::function<std::string()>& text) {
+    if (files) files->add(text);
+  }
+  /// A query that no file can hold.
+  void queryWithoutFile(const std::string& reason);
   void fault(const std::string& kind, const std::string& text) { findings.push_back({kind, text}); }
 };
 
@@ -117,13 +149,19 @@ struct Campaign {
   std::function<CaseId(std::uint64_t seed, std::uint64_t index)> number = [](std::uint64_t seed, std::uint64_t index) {
     return CaseId{{}, seed + index};
   };
-  /// Draws the case, asks, judges and counts. An exception is a fault. Called by several threads.
+  /// Draws the case, asks, judges and counts. An exception is a fault. Called by several threads, and once more for a
+  /// case that has failed, so that it writes its queries.
   std::function<void(Case&)> look;
+  std::string name;  ///< begins the names of files
 };
 
 struct Failure {
+  std::uint64_t index = 0;
   CaseId id;
   std::vector<Finding> findings;
+  /// How the case and its queries come back. Of the first few of each kind, as one kind can be much more frequent than
+  /// a worse one.
+  std::string words;
 };
 
 struct Report {
@@ -136,8 +174,9 @@ struct Report {
 /// @throws std::invalid_argument for an unknown class.
 Report run(const Campaign& campaign, const Options& options);
 /// One case again, with a description of it.
+/// @param folder  gets its queries; empty: none
 /// @return whether it is without fault.
-bool replay(const Campaign& campaign, const CaseId& id, std::string& words);
+bool replay(const Campaign& campaign, const CaseId& id, const std::string& folder, std::string& words);
 /// The counts of each class and of all, the mutants, and the first findings of each kind.
 std::string toText(const Report& report);
 /// The same of a single tally, of that name.

@@ -2,6 +2,10 @@
 // The harness itself: no fault is lost, and none stays without a name that brings it back.
 #include "harness.h"
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
 #include <gtest/gtest.h>
 
 namespace campaign {
@@ -29,6 +33,7 @@ Options hundred(int threads) {
   o.cases = 100;
   o.seed = 0;
   o.threads = threads;
+  o.folder.clear();
   return o;
 }
 
@@ -49,10 +54,44 @@ TEST(Harness, FaultsAreCountedByCasesAndNamed) {
 
 TEST(Harness, ACaseComesBackByItsName) {
   std::string words;
-  EXPECT_FALSE(replay(faulty(), {"odd", 13}, words));
-  EXPECT_EQ(words, "seed 13\n# FAULT wrong: once\n# FAULT wrong: twice\n");
-  EXPECT_FALSE(replay(faulty(), {"odd", 17}, words));
-  EXPECT_TRUE(replay(faulty(), {"odd", 15}, words));
+  EXPECT_FALSE(replay(faulty(), {"odd", 13}, "", words));
+  EXPECT_EQ(words, "seed 13\nFAULT wrong: once\nFAULT wrong: twice\n");
+  EXPECT_FALSE(replay(faulty(), {"odd", 17}, "", words));
+  EXPECT_TRUE(replay(faulty(), {"odd", 15}, "", words));
+}
+
+/// Files of failed cases, and of no others.
+TEST(Harness, QueriesOfFailedCasesAreWritten) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(testing::TempDir()) / "harness_test_failed_cases";
+  fs::remove_all(folder);
+  Campaign campaign = faulty();
+  campaign.name = "some/one";
+  campaign.look = [look = campaign.look](Case& c) {
+    c.query([&] { return "query of " + std::to_string(c.id.seed); });
+    c.queryWithoutFile("it moves as it likes");
+    look(c);
+  };
+  Options o = hundred(2);
+  o.folder = folder.string();
+  const std::string text = toText(run(campaign, o));
+  const std::string file = (folder / "some_one-odd-13-1.json").string();
+  EXPECT_NE(text.find("case 13, --class odd --replay 13: wrong: once\n"
+                      "case 13, --class odd --replay 13: wrong: twice\n"
+                      "  fcl_artic check --replay " +
+                      file + "\n  no replay file: it moves as it likes\n"),
+            std::string::npos)
+      << text;
+  std::ifstream in(file);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), "query of 13");
+  // Of ten cases of each kind as many as are named: each has two faults of the one kind, or one of the other.
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 4 + 8);
+  fs::remove_all(folder);
+  std::string words;
+  EXPECT_TRUE(replay(campaign, {"even", 2}, o.folder, words));
+  EXPECT_NE(words.find("some_one-even-2-1.json"), std::string::npos) << words;
+  fs::remove_all(folder);
+  EXPECT_NE(toText(run(faulty(), o)).find("no replay file: the case has asked no query"), std::string::npos);
 }
 
 TEST(Harness, OneClassAloneIfThereIsSuch) {

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdio>
 #include <exception>
+#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
@@ -12,9 +13,9 @@
 
 #include "arms.h"
 #include "fcl_artic/instruction_set.h"
+#include "fcl_artic/query_text.h"
 #include "modes/rules.h"
 #include "pairs/pair_campaign.h"
-#include "scene_file.h"
 #ifdef CAMPAIGN_HAS_URDF
 #include "urdf/tree_campaign.h"
 #endif
@@ -26,54 +27,75 @@ class AnswerLines {
  public:
   explicit AnswerLines(std::uint64_t queries) : lines_(queries) {}
   /// Different queries from different threads.
-  void set(const campaign::Asked& asked, const campaign::Case& c) {
+  /// @param query  its text. Its first lines are about who wrote it, and are not hashed.
+  void set(std::uint64_t index, const std::string& query, const fcl_artic::CertifiedResult& result) {
     static const char* const verdicts[] = {"free", "contact", "undecided"};
     std::uint64_t hash = 14695981039346656037u;  // FNV-1a
-    for (const char one : campaign::toText({asked.scene}))
-      hash = (hash ^ static_cast<unsigned char>(one)) * 1099511628211u;
-    const fcl_artic::CertifiedResult& result = asked.result(0);
-    lines_[c.index] = campaign::format("%llu %016llx %s %s %a %a\n", static_cast<unsigned long long>(c.index),
-                                       static_cast<unsigned long long>(hash), verdicts[static_cast<int>(result.status)],
-                                       result.certain ? "certain" : "-", result.t_lower, result.t_upper);
+    for (std::size_t i = query.find("\"robot\""); i < query.size(); ++i)
+      hash = (hash ^ static_cast<unsigned char>(query[i])) * 1099511628211u;
+    lines_[index] = campaign::format("%llu %016llx %s %s %a %a\n", static_cast<unsigned long long>(index),
+                                     static_cast<unsigned long long>(hash), verdicts[static_cast<int>(result.status)],
+                                     result.certain ? "certain" : "-", result.t_lower, result.t_upper);
   }
-  std::string text() const {
-    std::string all;
-    for (const std::string& line : lines_) all += line;
-    return all;
-  }
+  const std::vector<std::string>& lines() const { return lines_; }
 
  private:
   std::vector<std::string> lines_;
 };
 
-/// Files of scenes and of answers, which the campaign of arms alone has.
+/// Files of queries and of answers, which the campaign of arms alone has.
 struct Files {
-  std::string scenes, write_scenes, answers;
+  std::string record, recorded, answers;
 };
 
-campaign::Report runArms(campaign::Arms arms, campaign::Options& options, const Files& files) {
-  if (!files.scenes.empty()) {
-    const std::vector<campaign::Scene> scenes = campaign::readScenes(files.scenes);
-    std::vector<campaign::CaseId> ids;
-    for (const campaign::Scene& scene : scenes) ids.push_back({scene.family, scene.seed});
-    options.cases = ids.size();
-    arms.number = [ids](std::uint64_t, std::uint64_t index) { return ids[index]; };
-    arms.draw = [&files](campaign::Asked& asked, campaign::Case& c) {
-      // For each thread its own: making an fcl::CollisionObject writes to its geometry.
-      static thread_local const std::vector<campaign::Scene> own = campaign::readScenes(files.scenes);
-      asked.scene = own[c.index];
-      asked.question = prepare(asked.scene);
-    };
+void writeFile(const std::string& file, const std::vector<std::string>& parts) {
+  if (file.empty()) return;
+  std::ofstream out(file, std::ios::binary);
+  for (const std::string& part : parts) out << part;
+  if (!out.flush()) throw std::runtime_error("can't write '" + file + "'");
+}
+
+/// The queries of a file that --record has written: texts one after the other, each of which ends with a line "}".
+std::vector<std::string> readQueries(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error("can't read '" + file + "'");
+  std::vector<std::string> queries(1);
+  for (std::string line; std::getline(in, line);) {
+    queries.back() += line + "\n";
+    if (line == "}") queries.emplace_back();
   }
-  AnswerLines lines(files.answers.empty() ? 0 : options.cases);
-  std::vector<campaign::Scene> written(files.write_scenes.empty() ? 0 : options.cases);
+  queries.pop_back();
+  return queries;
+}
+
+campaign::Report askRecorded(const Files& files, campaign::Options& options) {
+  const std::vector<std::string> queries = readQueries(files.recorded);
+  options.cases = queries.size();
+  AnswerLines lines(options.cases);
+  campaign::Campaign recorded;
+  recorded.look = [&](campaign::Case& c) {
+    const std::string& query = queries[c.index];
+    c.query([&] { return query; });
+    lines.set(c.index, query, fcl_artic::readQuery(query).ask());
+  };
+  recorded.number = [](std::uint64_t, std::uint64_t index) { return campaign::CaseId{"", index}; };
+  recorded.name = "recorded";
+  campaign::Report report = run(recorded, options);
+  writeFile(files.answers, lines.lines());
+  return report;
+}
+
+campaign::Report runArms(campaign::Arms arms, const campaign::Options& options, const Files& files) {
+  if (files.record.empty() && files.answers.empty()) return run(campaignOf(std::move(arms)), options);
+  AnswerLines lines(options.cases);
+  std::vector<std::string> queries(options.cases);
   arms.judges.push_back([&](const campaign::Asked& asked, campaign::Case& c) {
-    if (!files.answers.empty()) lines.set(asked, c);
-    if (!written.empty()) written[c.index] = asked.scene;
+    queries[c.index] = asked.question.manager->writeQuery(*asked.question.motion, asked.answers[0].request);
+    lines.set(c.index, queries[c.index], asked.result(0));
   });
-  campaign::Report report = run(campaignOf(arms), options);
-  if (!files.answers.empty()) campaign::writeFile(lines.text(), files.answers);
-  if (!files.write_scenes.empty()) campaign::writeFile(toText(written), files.write_scenes);
+  campaign::Report report = run(campaignOf(std::move(arms)), options);
+  writeFile(files.answers, lines.lines());
+  writeFile(files.record, queries);
   return report;
 }
 
@@ -105,20 +127,25 @@ int main(int argc, char** argv) {
   app.add_option("--class", options.family, "only this class of cases");
   const auto* replay =
       app.add_option("--replay", again.seed,
-                     "run the case of this seed (with --class) and describe it; of arms as a file for --scenes");
+                     "run the case of this seed (with --class), describe it, and write its queries to --failed");
+  app.add_option("--failed", options.folder,
+                 "folder for the queries of cases that fail: fcl_artic check --replay asks them again.")
+      ->capture_default_str();
   app.add_flag("--try-spoiling", options.mutants,
                "spoil a copy of each answer in each way, and count what the judge notices");
   Files files;
   app.add_option("--answers", files.answers,
-                 "arms: write each query's answer to this file, a line each: number, hash of the scene, verdict, "
+                 "arms: write each query's answer to this file, a line each: number, hash of the query, verdict, "
                  "t_lower and t_upper with all bits. scripts/compare-answers compares two of them");
-  app.add_option("--scenes", files.scenes, "arms: ask about the scenes of this file, which --write-scenes has written")
+  app.add_option("--record", files.record, "arms: write all queries to this file, with all bits");
+  app.add_option("--recorded", files.recorded, "ask the queries of this file, which --record has written; unjudged")
+      ->excludes("--of")
       ->excludes("--queries")
       ->excludes("--seed")
-      ->excludes("--class");
-  app.add_option("--write-scenes", files.write_scenes, "arms: write all scenes to this file, with all bits");
+      ->excludes("--class")
+      ->excludes("--record");
   bool unjudged = false, redon = false;
-  app.add_flag("--unjudged", unjudged, "arms: ask only; nothing is examined, and the exit status is 0");
+  app.add_flag("--unjudged", unjudged, "arms: ask only; nothing is examined");
   app.add_flag("--redon2004", redon, "arms: ask for the paper's method");
   CLI11_PARSE(app, argc, argv);
   try {
@@ -129,7 +156,7 @@ int main(int argc, char** argv) {
     if (*replay) {
       again.family = options.family;
       std::string words;
-      const bool good = campaign::replay(chosen, again, words);
+      const bool good = campaign::replay(chosen, again, options.folder, words);
       std::fputs(words.c_str(), stdout);
       return good ? 0 : 1;
     }
@@ -141,10 +168,12 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "\r%3d %%", static_cast<int>(percent));
     };
     std::printf("instruction set: %s\n", fcl_artic::instructionSet());
-    const campaign::Report report = what == "arms" ? runArms(std::move(arms), options, files) : run(chosen, options);
+    const campaign::Report report = !files.recorded.empty() ? askRecorded(files, options)
+                                    : what == "arms"        ? runArms(std::move(arms), options, files)
+                                                            : run(chosen, options);
     if (terminal) std::fprintf(stderr, "\r");
     std::fputs(toText(report).c_str(), stdout);
-    return unjudged || report.total.faults() == 0 ? 0 : 1;
+    return report.total.faults() == 0 ? 0 : 1;
   } catch (const std::exception& e) {
     std::fprintf(stderr, "campaign: %s\n", e.what());
     return 2;

@@ -158,11 +158,12 @@ void take(const std::string& name, const Result& result, Judge& judge, Tally& ta
   judge.look(name, certificate, result.isFree(), result.certain, tally);
 }
 
-/// Asks for an answer, and again for its certificate.
+/// Asks for an answer, and again for its certificate. A certificate that fails leaves its query as a file.
 /// @param query  query(request, result)
-template <class Request, class Result, class Query>
-void ask(const Query& query, bool others, const std::string& name, Judge& judge, Tally& tally) {
-  Request request;
+/// @param text  text(request), as campaign::QueryFiles::add() has it
+template <class Result, class Request, class Query, class Text>
+void ask(const Query& query, const Text& text, Request request, bool others, const std::string& name, Judge& judge,
+         Tally& tally) {
   Result result;
   query(request, result);
   const auto begin = Clock::now();
@@ -176,16 +177,20 @@ void ask(const Query& query, bool others, const std::string& name, Judge& judge,
   query(request, result);
   tally.note("query with certificate, us", microseconds(again));
   tally.note("query, us", query_us);
+  const std::uint64_t faults = tally.faults();
   take(name, result, judge, tally);
+  if (tally.faults() == faults) return;
+  campaign::QueryFiles files(campaign::QueryFiles::usualFolder(), "certificate-" + name + "-" + std::to_string(faults));
+  files.add([&] { return text(request); });
+  std::printf("%s:\n%s", name.c_str(), files.lines().c_str());
 }
 template <class Motion>
 void ask(const ArticulatedCollisionManager& manager, const Motion& motion, bool others, const std::string& name,
-         Judge& judge, Tally& tally) {
-  ask<CertifiedRequest, CertifiedResult>(
-      [&](const CertifiedRequest& request, CertifiedResult& result) {
-        manager.continuousCollide(motion, request, result);
-      },
-      others, name, judge, tally);
+         Judge& judge, Tally& tally, const CertifiedRequest& request = {}) {
+  ask<CertifiedResult>(
+      [&](const CertifiedRequest& own, CertifiedResult& result) { manager.continuousCollide(motion, own, result); },
+      [&](const CertifiedRequest& own) { return manager.writeQuery(motion, own); }, request, others, name, judge,
+      tally);
 }
 
 void panda(const fs::path& data, std::size_t most, bool others, Judge& judge, Tally& all) {
@@ -226,12 +231,14 @@ void pairsOf(pairs::Bodies bodies, const char* set, std::size_t most, std::uint6
       options.unbounded = true;
       const PairQuery query = makePair(options, seed + i);
       const auto motion1 = query.path1->motion(), motion2 = query.path2->motion();
-      ask<CertifiedPairRequest, CertifiedPairResult>(
+      ask<CertifiedPairResult>(
           [&](const CertifiedPairRequest& request, CertifiedPairResult& result) {
             fcl_artic::continuousCollide(query.body1->geometry.get(), motion1.get(), query.body2->geometry.get(),
                                          motion2.get(), request, result);
           },
-          others, set + std::to_string(static_cast<int>(moves)) + "_" + std::to_string(i), judge, tally);
+          [](const CertifiedPairRequest&) -> std::string { throw std::invalid_argument(campaign::kTwoBodies); },
+          CertifiedPairRequest(), others, set + std::to_string(static_cast<int>(moves)) + "_" + std::to_string(i),
+          judge, tally);
     }
   }
   print(set, tally);
@@ -252,22 +259,16 @@ void arm(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Tally&
     manager.registerObject(std::make_shared<fcl::CollisionObjectd>(bench::toBvh<fcl::OBBRSSd>(mesh)));
   }
   manager.setup();
+  CertifiedRequest request;
+  request.check_self = false;
   for (const double step : {1.0, 5.0, 30.0}) {
     const auto ends = bench::makeArmQueries(scene, step * bench::kPi / 180, most, options.seed, [&](const auto& q) {
-      CertifiedRequest request;
-      request.check_self = false;
       return !manager.continuousCollide(q.q0, q.q1, request).isFree();
     });
     Tally tally;
     for (const auto& set : ends) {
       for (const bench::ArmQuery& q : set) {
-        ask<CertifiedRequest, CertifiedResult>(
-            [&](const CertifiedRequest& request, CertifiedResult& result) {
-              CertifiedRequest own = request;
-              own.check_self = false;
-              manager.continuousCollide(JointMotion::linear(*scene.tree, q.q0, q.q1), own, result);
-            },
-            others, "arm", judge, tally);
+        ask(manager, JointMotion::linear(*scene.tree, q.q0, q.q1), others, "arm", judge, tally, request);
       }
     }
     print("arm, " + std::to_string(static_cast<int>(step)) + " degrees", tally);
@@ -300,10 +301,13 @@ void links(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Tall
 /// Random robots from URDF text (test/urdf).
 void trees(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Tally& all) {
   Tally tally;
-  const auto trees = urdf_trees::campaignOfTrees([&](std::uint64_t tree, const CertifiedResult& result) {
+  const auto trees = urdf_trees::campaignOfTrees([&](campaign::Case& c, const CertifiedResult& result) {
+    if (c.files) return;  // counted already
     tally.count("free", result.isFree());
     tally.count("others", !result.isFree());
-    if (result.isFree() || others) take("tree_" + std::to_string(tree), result, judge, tally);
+    const std::uint64_t faults = tally.faults();
+    if (result.isFree() || others) take("tree_" + std::to_string(c.index), result, judge, tally);
+    if (tally.faults() > faults) c.fault("certificate", "which one, stands below");
   });
   campaign::Options options;
   options.cases = most;
@@ -358,19 +362,15 @@ void modesOf(std::size_t most, std::uint64_t seed, bool others, Judge& judge, Ta
   for (std::size_t i = 0; i < most; ++i) {
     modes::Random random(seed + i);
     const modes::World world(random);
-    const double margin = random.chance(0.3) ? random.in(0, 0.05) : 0;
-    const bool ignore = random.chance(0.3);
+    CertifiedRequest request;
+    request.margin = random.chance(0.3) ? random.in(0, 0.05) : 0;
+    request.ignore_initial_contact = random.chance(0.3);
     const std::string kind = world.isPair()         ? "modes, pair"
                              : world.isTrajectory() ? "modes, trajectory"
                                                     : "modes, motion";
-    ask<CertifiedRequest, CertifiedResult>(
-        [&](const CertifiedRequest& request, CertifiedResult& result) {
-          CertifiedRequest own = request;
-          own.margin = margin;
-          own.ignore_initial_contact = ignore;
-          world.ask(own, result);
-        },
-        others, "modes_" + std::to_string(i), judge, tallies[kind]);
+    ask<CertifiedResult>([&](const CertifiedRequest& own, CertifiedResult& result) { world.ask(own, result); },
+                         [&](const CertifiedRequest& own) { return world.writeQuery(own); }, request, others,
+                         "modes_" + std::to_string(i), judge, tallies[kind]);
   }
   for (const auto& [kind, tally] : tallies) {
     print(kind, tally);

@@ -19,7 +19,7 @@
 #include <fcl/narrowphase/distance.h>
 #include <gtest/gtest.h>
 
-#include "../campaign/harness.h"
+#include "../campaign/expect.h"
 #include "fcl_artic/manager.h"
 #include "random_robot.h"
 #include "rivals.h"
@@ -162,8 +162,7 @@ std::unique_ptr<ArticulatedCollisionManager> makeManager(const Query& query) {
   return made;
 }
 
-CertifiedResult askCertified(const ArticulatedCollisionManager& manager, const Query& query, const CertifiedWay& way,
-                             bool self) {
+CertifiedRequest requestOf(const CertifiedWay& way, bool self) {
   CertifiedRequest request;
   request.method = way.method;
   request.redon = way.redon;
@@ -171,9 +170,7 @@ CertifiedResult askCertified(const ArticulatedCollisionManager& manager, const Q
   request.check_scene = !self;
   // With a budget of the caller's the paper's method leaves no query to the standard one for its work.
   if (way.method == Method::redon2004) request.work_budget = std::uint64_t{1} << 40;
-  CertifiedResult result;
-  manager.continuousCollide(*query.motion, request, result);
-  return result;
+  return request;
 }
 
 std::shared_ptr<Mesh> randomMesh(Random& random, double size) {
@@ -297,7 +294,12 @@ void run(bool self, std::uint64_t seed, std::uint64_t count) {
     for (std::size_t m = 0; m < all.size(); ++m) {
       if (n % all[m].every != all[m].every - 1) continue;
       SCOPED_TRACE(all[m].name);
-      const CertifiedResult certified = askCertified(*manager, query, all[m], self);
+      const CertifiedRequest request = requestOf(all[m], self);
+      const campaign::QueryOfExpectations file(
+          campaign::format("crosscheck-%llu-%llu-%zu", static_cast<unsigned long long>(seed),
+                           static_cast<unsigned long long>(n), m),
+          [&] { return manager->writeQuery(*query.motion, request); });
+      const CertifiedResult certified = manager->continuousCollide(*query.motion, request);
       if (starts) {
         EXPECT_EQ(certified.t_lower, 0);
       }

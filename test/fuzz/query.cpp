@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::string text;
   try {
     text = written(*query);
-  } catch (const std::invalid_argument&) {  // a rotation that would be rounded once more
+  } catch (const std::invalid_argument&) {  // it says why
     return 0;
   }
   if (written(readQuery(text)) != text) fuzz::fault("a query that is written and read becomes another one");

@@ -24,9 +24,11 @@ TEST(Modes, AgreeInAllCombinationsOfOptions) {
 /// Worlds that have found faults: a certain contact of the mode `any` that was not among the contacts, as a pair
 /// beside it was still open.
 TEST(Modes, WorldsThatFoundFaults) {
+  campaign::Options o;
+  o.cases = 1;
   for (const std::uint64_t seed : {5047764u}) {
-    std::string words;
-    EXPECT_TRUE(replay(modes::campaignOfModes(), {"", seed}, words)) << words;
+    o.seed = seed;
+    runWithoutFaults(modes::campaignOfModes(), o);
   }
 }
 

@@ -305,12 +305,14 @@ void check(const World& world, const std::vector<Asked>& asked, Random& random, 
 
 campaign::Campaign campaignOfModes() {
   campaign::Campaign all;
+  all.name = "modes";
   all.look = [](campaign::Case& c) {
     Random random(c.id.seed);
     const World world(random);
     std::vector<Asked> asked = randomQueries(random, 12);
     for (Asked& a : asked) {
       if (world.isTrajectory()) a.request.tolerance_time *= world.end() - world.begin();
+      c.query([&] { return world.writeQuery(a.request); });
       world.ask(a.request, a.result);
       c.tally.count("queries");
       c.tally.count("free", a.result.isFree());

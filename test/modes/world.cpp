@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "world.h"
+#include "../campaign/harness.h"
 #include "../support/allow_neighbours.h"
 
 #include <algorithm>
@@ -369,6 +370,11 @@ void World::ask(const CertifiedRequest& request, CertifiedResult& result) const 
   } else {
     manager_->continuousCollide(*motion_, request, result);
   }
+}
+
+std::string World::writeQuery(const CertifiedRequest& request) const {
+  if (!tree_) throw std::invalid_argument(campaign::kTwoBodies);
+  return trajectory_ ? manager_->writeQuery(*trajectory_, request) : manager_->writeQuery(*motion_, request);
 }
 
 }  // namespace modes

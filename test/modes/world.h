@@ -98,6 +98,8 @@ class World {
   bool isPair() const { return !tree_; }  ///< firstOfEveryPair is first there
   bool isTrajectory() const { return trajectory_ != nullptr; }
   void ask(const fcl_artic::CertifiedRequest& request, fcl_artic::CertifiedResult& result) const;
+  /// @throws std::invalid_argument for two bodies, which no manager has.
+  std::string writeQuery(const fcl_artic::CertifiedRequest& request) const;
 
  private:
   void addPair(Random& random);

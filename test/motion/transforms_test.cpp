@@ -69,6 +69,20 @@ TEST(UnitVectorTest, WhatHasNoDirectionIsNone) {
   }
 }
 
+TEST(UnitVectorTest, WhatWasMadeIsTakenAsItIs) {
+  for (const int mode : kModes) {
+    Random random(4);
+    for (int n = 0; n < 500000; ++n) {
+      const Vector3d v = random.uniform(0.1, 10) * randomDirection(random);
+      inMode(mode, [&] {
+        const Vector3d made = *UnitVector::within3Ulps(v);
+        EXPECT_EQ(UnitVector::within3Ulps(made)->vector(), made) << n;
+        return 0;
+      });
+    }
+  }
+}
+
 TEST(UnitVectorTest, LengthsAlongTheirDirectionsDoNotVanish) {
   for (const double length : {5e-324, 2e-323, 1.6e-162, 2e-162, 1e-150, 1.0}) {
     for (const Vector3d& v : {Vector3d(length, 0, 0), Vector3d(0, -length, 0)}) {
@@ -91,6 +105,38 @@ TEST(RotationTest, IsWithinItsUlpsOfTheProperOneNextToIt) {
   }
   EXPECT_LE(worst, Rotation::kUlps);
   EXPECT_GT(worst, 1);
+}
+
+/// So a rotation or an axis that is handed on as numbers stays what it is.
+TEST(RotationTest, WhatWasMadeIsTakenAsItIs) {
+  for (const int mode : kModes) {
+    Random random(3);
+    int rounded = 0, circles = 0;
+    for (int n = 0; n < 500000; ++n) {
+      const Matrix3d R = test::randomPose(random, 0).linear();
+      inMode(mode, [&] {
+        const Matrix3d made = *Rotation::within12Ulps(R, 1e-4);
+        if (made == R) return 0;
+        ++rounded;
+        circles += !(orthonormalityDefect(made).cwiseAbs().maxCoeff() <= 4e-16);
+        EXPECT_EQ(Rotation::within12Ulps(made, 1e-4)->matrix(), made) << n;
+        return 0;
+      });
+    }
+    EXPECT_GT(rounded, 10000);
+    EXPECT_GE(circles, mode == FE_TONEAREST);
+  }
+  // Their circles don't end after 64 rounds where they began: by Eigen without vector instructions, and with SSE2.
+  const double circles[][9] = {
+      {-0x1.9da379a0e542cp-1, -0x1.2db7eefbd1744p-1, 0x1.cbd16d454325fp-8, 0x1.2a7433aec08cp-1, -0x1.9a00922414a3p-1,
+       -0x1.19eacd97ff233p-3, 0x1.6346df26f8706p-4, -0x1.b6c42880232ebp-4, 0x1.fb1cec969ee6fp-1},
+      {-0x1.8dbef27cea0dep-5, 0x1.ea08d64ee6f21p-1, -0x1.24857aece3f67p-2, -0x1.2ab6c1c7b0bc1p-1, 0x1.a3c45d4dcb022p-3,
+       0x1.925e994a4b7ep-1, 0x1.9f15e82a1ee71p-1, 0x1.a3794fcbed036p-3, 0x1.18cdae1b7828ep-1}};
+  for (const double* rows : circles) {
+    const Matrix3d R = Matrix3d::Map(rows).transpose();
+    const Matrix3d made = *Rotation::within12Ulps(R, 1e-4);
+    EXPECT_EQ(Rotation::within12Ulps(made, 1e-4)->matrix(), made);
+  }
 }
 
 TEST(RotationTest, WhatIsNoneIsRefused) {

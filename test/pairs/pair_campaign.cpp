@@ -448,6 +448,7 @@ void look(Case& c) {
   c.tally.count("starts", truth.hit && truth.time == 0);
   c.tally.count("between", truth.hit && truth.time > 0 && judge.at(1, 0.5).gap > 0);  // two free ends
   c.tally.count("grazes", !truth.hit && truth.gap <= 1e-3);
+  c.queryWithoutFile(campaign::kTwoBodies);
   const Answer answer = ask(query);
   if (c.words) *c.words += describe(query, truth, answer);
   const auto findings = [&](const Answer& one) { return examine(query, judge, truth, one); };
@@ -487,7 +488,7 @@ campaign::Campaign campaignOfPairs() {
           [](std::uint64_t seed, std::uint64_t index) {
             return campaign::CaseId{familyAt(index).name, Random::mix(seed, index)};
           },
-          look};
+          look, "pairs"};
 }
 
 }  // namespace pair_campaign

@@ -73,6 +73,7 @@ TEST(Redon2004, FreeBodiesAgreeWithTheStandardMethodAndWithSampling) {
   free_bodies.look = [&](Case& c) {
     const pairs::PairQuery query = pair_campaign::makeQuery(pair_campaign::familyOf(c.id.family), c.id.seed);
     const auto motion1 = query.path1->motion(), motion2 = query.path2->motion();
+    c.queryWithoutFile(campaign::kTwoBodies);
     const auto ask = [&](Method method) {
       fcl_artic::CertifiedRequest request;
       request.method = method;

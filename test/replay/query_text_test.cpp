@@ -189,6 +189,22 @@ struct Turning {
   std::shared_ptr<fcl::CollisionObjectd> still;
 };
 
+/// Such a robot has motions of no rows.
+TEST(QueryText, RobotsWithoutVariablesAreRead) {
+  auto tree = std::make_shared<KinematicTree>("still");
+  tree->addLink("base");
+  ArticulatedCollisionManager manager(tree);
+  manager.bind("base", std::make_shared<fcl::CollisionObjectd>(std::make_shared<fcl::Sphered>(0.1)));
+  const Eigen::Isometry3d from(Eigen::Translation3d(-1, 0, 0)), to(Eigen::Translation3d(1, 0, 0));
+  const auto way = std::make_shared<fcl::TranslationMotiond>(from, to);
+  manager.registerObject(std::make_shared<fcl::ContinuousCollisionObjectd>(std::make_shared<fcl::Sphered>(0.1), way),
+                         "ball");
+  manager.setup();
+  const Eigen::VectorXd none(0);
+  EXPECT_TRUE(expectSameBits(manager, JointMotion::linear(*tree, none, none), {}).certain);
+  EXPECT_TRUE(expectSameBits(manager, JointTrajectory::linear(*tree, {0, 1, 3}, {none, none, none}), {}).certain);
+}
+
 TEST(QueryText, EachGeometryIsReadAgain) {
   for (int kind = 0; kind < kKinds; ++kind) {
     SCOPED_TRACE(kind);

@@ -85,8 +85,8 @@ class TreeCase {
 
   /// @param without  link whose geometry is left out; empty: none.
   /// @param[out] neighbours  what the manager found of these; null: not asked.
-  CertifiedResult ask(const Robot& robot, ContactMode mode, const std::string& without = {}, bool certificate = false,
-                      std::vector<LinkPairFinding>* neighbours = nullptr) const {
+  CertifiedResult ask(const Robot& robot, ContactMode mode, campaign::Case& c, const std::string& without = {},
+                      bool certificate = false, std::vector<LinkPairFinding>* neighbours = nullptr) const {
     const KinematicTree& tree = *robot.tree;
     ArticulatedCollisionManager manager(robot.tree);
     for (const LinkGeometry& g : robot.geometry) {
@@ -114,7 +114,9 @@ class TreeCase {
     request.mode = mode;
     request.certificate = certificate;
     CertifiedResult result;
-    manager.continuousCollide(JointMotion::linear(tree, q0, q1), request, result);
+    const JointMotion motion = JointMotion::linear(tree, q0, q1);
+    c.query([&] { return manager.writeQuery(motion, request); });
+    manager.continuousCollide(motion, request, result);
     return result;
   }
 
@@ -263,14 +265,14 @@ void count(const TreeCase& tree, const Robot& robot, campaign::Tally& tally) {
 }
 
 void judge(TreeCase& tree, const std::string& file,
-           const std::function<void(std::uint64_t, const CertifiedResult&)>& certificates, campaign::Case& c) {
+           const std::function<void(campaign::Case&, const CertifiedResult&)>& certificates, campaign::Case& c) {
   const Robot robot = tree.read(file);
   std::vector<LinkPairFinding> neighbours;
-  const CertifiedResult r = tree.ask(robot, ContactMode::first, {}, static_cast<bool>(certificates), &neighbours),
-                        any = tree.ask(robot, ContactMode::any);
+  const CertifiedResult r = tree.ask(robot, ContactMode::first, c, {}, static_cast<bool>(certificates), &neighbours),
+                        any = tree.ask(robot, ContactMode::any, c);
   const std::string untrue = tree.leaveOut(neighbours, r, c.tally);
   if (!untrue.empty()) c.fault("untrue", "neighbours: " + untrue);
-  if (certificates) certificates(c.index, r);
+  if (certificates) certificates(c, r);
 
   count(tree, robot, c.tally);
   c.tally.count("free", r.isFree());
@@ -290,7 +292,7 @@ void judge(TreeCase& tree, const std::string& file,
   if (r.isFree() != any.isFree() && (r.isFree() ? any.certain : r.certain)) c.fault("differing", "modes differ");
 
   if (!c.mutants || !r.certain || r.isFree() || r.contacts.empty()) return;
-  const CertifiedResult spoilt = tree.ask(robot, ContactMode::first, touchingLink(r.contacts[0]));
+  const CertifiedResult spoilt = tree.ask(robot, ContactMode::first, c, touchingLink(r.contacts[0]));
   if (!spoilt.isFree() && spoilt.t_lower < r.t_upper + 0.05) return;  // hidden by a contact of others
   c.tally.mutant("a link without geometry", 0.9, true,
                  tree.touchesBefore(spoilt.t_lower, spoilt.isFree(), samples) >= 0);
@@ -298,8 +300,9 @@ void judge(TreeCase& tree, const std::string& file,
 
 }  // namespace
 
-campaign::Campaign campaignOfTrees(std::function<void(std::uint64_t, const CertifiedResult&)> certificates) {
+campaign::Campaign campaignOfTrees(std::function<void(campaign::Case&, const CertifiedResult&)> certificates) {
   campaign::Campaign all;
+  all.name = "trees";
   all.number = [](std::uint64_t seed, std::uint64_t index) {
     return campaign::CaseId{"", pairs::Random::mix(seed, index)};
   };

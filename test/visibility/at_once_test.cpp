@@ -77,6 +77,7 @@ TEST(AtOnce, WrongCullsAreSeen) {
   honest = false;
   campaign::Options o = options(600, 22);
   o.threads = 1;  // one executor, the one that was made above
+  o.folder.clear();
   const campaign::Tally all = run(atOnce(fcl_artic::Method::standard, culler), o).total;
   const std::uint64_t missed = all.faults("missed"), late = all.faults("late");
   std::cout << "a quarter of the groups culled wrongly: " << missed << " missed, " << late << " late of " << o.cases
