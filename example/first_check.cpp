@@ -19,7 +19,6 @@ int main() {
   q0 << -2.1, 1.0, -1.0, -0.1, -0.1, 0.0;
   q1 << -0.1, 0.3, -2.3, -1.0, 1.1, 0.0;
   const CertifiedResult result = manager.continuousCollide(q0, q1);  // the straight line in joint space
-
-  std::cout << result << '\n';  // "contact within [0.433953, 0.433954], proven", or "free: proven"
+  std::cout << result << '\n';  // "contact within [0.43395303..., 0.43395303...], proven", or "free: proven"
   if (const CertifiedContact* c = result.first()) std::cout << *c << '\n';  // who, when, where
 }

@@ -37,7 +37,7 @@ def test_the_first_check_meets_the_pipes(tmp_path, shared_world, hit):
     requires_pictures(shared_world, hit)
     (tmp_path / "data").symlink_to(ROOT / "data")
     printed = run(tmp_path, EXAMPLES / "first_check.py")
-    assert re.match(r"contact within \[.*\], proven\n\('wrist_roll', 'pipes'\) \[", printed)
+    assert re.match(r"contact within \[0\.43395303\d*, 0\.43395303\d*\], proven\n\('wrist_roll', 'pipes'\) \[", printed)
     assert (tmp_path / "contact.png").read_bytes().startswith(b"\x89PNG")
 
 
