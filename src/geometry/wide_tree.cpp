@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "geometry/wide_tree.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace fcl_artic {
@@ -42,11 +43,13 @@ void setBox(const Node& node, std::size_t lane, engine::EightBoxes& boxes) {
     boxes.hi[k][lane] = node.hi[k];
   }
 }
-void setEmpty(std::size_t lane, engine::EightBoxes& boxes) {
-  for (int k = 0; k < 3; ++k) {
-    boxes.lo[k][lane] = std::numeric_limits<float>::infinity();
-    boxes.hi[k][lane] = -std::numeric_limits<float>::infinity();
-  }
+
+/// Eight boxes that meet nothing.
+engine::EightBoxes emptyBoxes() {
+  engine::EightBoxes boxes;
+  std::fill_n(&boxes.lo[0][0], 3 * kChildren, std::numeric_limits<float>::infinity());
+  std::fill_n(&boxes.hi[0][0], 3 * kChildren, -std::numeric_limits<float>::infinity());
+  return boxes;
 }
 
 /// The number of pieces below each node. (Children come after their parents.)
@@ -95,12 +98,10 @@ std::vector<engine::UpperNode> upperNodes(const engine::TreeView& tree) {
   for (std::size_t i = 0; i < tops.size(); ++i) {
     const std::vector<std::int32_t> children = childrenOf(tree.nodes, tops[i], canDivide);
     engine::UpperNode upper;
-    for (std::size_t lane = 0; lane < kChildren; ++lane) {
-      upper.node[lane] = upper.upper[lane] = -1;
-      if (lane >= children.size()) {
-        setEmpty(lane, upper.boxes);
-        continue;
-      }
+    upper.boxes = emptyBoxes();
+    std::fill_n(upper.node, kChildren, -1);
+    std::fill_n(upper.upper, kChildren, -1);
+    for (std::size_t lane = 0; lane < children.size(); ++lane) {
       upper.node[lane] = children[lane];
       setBox(tree.nodes[children[lane]], lane, upper.boxes);
       if (!canDivide(children[lane])) continue;

@@ -25,8 +25,8 @@ struct alignas(32) Node {
 };
 
 /// Node of the upper levels of a large body's tree, for stage 1: up to eight children, each of which stands for a node
-/// of the tree. Each child's box holds all that is below it. The children of one upper node together hold all that is below
-/// the node that it stands for. Node 0 stands for the root.
+/// of the tree. Each child's box holds all that is below it. The children of one upper node together hold all that is
+/// below the node that it stands for. Node 0 stands for the root.
 struct alignas(64) UpperNode {
   EightBoxes boxes;       ///< the nodes' own, in the tree's frame; lanes that are not used have empty ones
   std::int32_t node[8];   ///< the tree's node; -1: the lane is not used

@@ -100,12 +100,7 @@ inline void StageOne::sweepMover(int mover) {
     sweepLss({frame, frames_.bounds(0, carried.step), problem().sweeps[0].first_order, whole().d}, carried,
              mover_lss_[mover]);
     if (frame) {
-      Vec3Lanes lo, hi;
-      boundLss(mover_lss_[mover], margin, lo, hi);
-      for (int k = 0; k < 3; ++k) {
-        box.lo[k] = narrowDown(lo[k]);
-        box.hi[k] = narrowUp(hi[k]);
-      }
+      boundLss(mover_lss_[mover], margin, box);
       setWholeBox(mover);
       return;
     }
@@ -213,14 +208,9 @@ inline void StageOne::expectContact(PairId pair, int mover, const engine::StillB
 /// @param lss  the link's, as seen from the tree's frame.
 inline void StageOne::cullPatches(PairId pair, const TreeView& tree, const SweptLss& lss, unsigned mask,
                                   Buffer<Entry>& open) {
-  SweptBox parts;
-  Vec3Lanes lo, hi;
   const double margin = query().margins.of(pair);
-  boundLss(lss, margin, lo, hi);
-  for (int k = 0; k < 3; ++k) {
-    parts.lo[k] = narrowDown(lo[k]);
-    parts.hi[k] = narrowUp(hi[k]);
-  }
+  SweptBox parts;
+  boundLss(lss, margin, parts);
   float ends[6];
   endsOfWhole(parts, ends);
   const SweptBox whole = spreadBox(ends, ends + 3);

@@ -64,6 +64,16 @@ FCL_ARTIC_INLINE void boundLss(const SweptLss& s, double margin, Vec3Lanes& lo, 
   hi = hi + Vec3Lanes(slack, slack, slack);
 }
 
+/// The same in single precision, rounded outward.
+FCL_ARTIC_INLINE void boundLss(const SweptLss& s, double margin, SweptBox& box) {
+  Vec3Lanes lo, hi;
+  boundLss(s, margin, lo, hi);
+  for (int k = 0; k < 3; ++k) {
+    box.lo[k] = narrowDown(lo[k]);
+    box.hi[k] = narrowUp(hi[k]);
+  }
+}
+
 /// Least of the Bernstein points of g0 + tau g1 + tau^2 g2.
 FCL_ARTIC_INLINE Lanes leastPoint(Lanes g0, Lanes g1, Lanes g2) {
   return min((g0 + g2) - abs(g1), g0 - g2);
