@@ -185,7 +185,9 @@ class PairSearch : PartOfSolver {
   EarliestFirst earliest_first_;  ///< of these, by the times until which they are proven free
   Buffer<Candidate> leaves_;      ///< of a narrower lane
   Buffer<Candidate> touching_;    ///< at one time
-  int splits_at_start_ = 0;       ///< divisions of the lane that begins at 0 before recordAtStart() is asked
+  PairId crossing_tried_ =
+      engine::kNoPair;       ///< recordAtStart() has looked for triangles that cross, all over the bodies
+  int splits_at_start_ = 0;  ///< divisions of the lane that begins at 0 before recordAtStart() is asked
 };
 
 /// Makes a candidate of an entry, to be followed from `start`.
@@ -262,7 +264,10 @@ inline bool PairSearch::recordWhereTheyRest(const Entry& e, double t) {
 inline bool PairSearch::recordAtStart(const Selection& of) {
   const PairId pair = of.list[of.begin].pair;
   if (contacts_.watchFrom(pair) > 0) return false;
-  if (proofs_.anyTriangles(motions_.of(pair, TimeBatch::around(0)), 0, kMaxBoxPairs, {pair, 0, 0, 1})) return true;
+  const bool first_try = crossing_tried_ != pair;  // (several patches of one body may come here)
+  crossing_tried_ = pair;
+  const Entry all = {pair, 0, 0, 1};
+  if (first_try && proofs_.anyTriangles(motions_.of(pair, TimeBatch::around(0)), 0, kMaxBoxPairs, all)) return true;
   const Shortened shortened(stack_);
   const int out_begin = stack_.size();
   const TimeBatch batch = TimeBatch::partsOf(0, finestEnd(0));
@@ -279,7 +284,7 @@ inline bool PairSearch::recordAtStart(const Selection& of) {
   const Touching touching = recordTouching(0, false);
   if (touching != Touching::maybe) return touching == Touching::recorded;
   const TimeBatch after = TimeBatch::around(min(1.0, 0.5 * query().tolerance_time));
-  return proofs_.anyTriangles(motions_.of(pair, after), 0, kMaxAfterStart, {pair, 0, 0, 1});
+  return first_try && proofs_.anyTriangles(motions_.of(pair, after), 0, kMaxAfterStart, all);
 }
 
 /// Records a leaf pair of `touching_` that touches at t, if there is one.
@@ -354,6 +359,7 @@ inline void PairSearch::run(const Buffer<Entry>& open) {
 /// The pairs of open[begin, end), over [0, 1].
 inline void PairSearch::search(const Buffer<Entry>& open, int begin, int end) {
   horizon_.beginSearch();
+  crossing_tried_ = engine::kNoPair;
   pieces_.clear();
   stack_.clear();
   if (problem().num_movers == 0 && end - begin == 1) {
@@ -378,8 +384,10 @@ inline void PairSearch::search(const Buffer<Entry>& open, int begin, int end) {
 /// Traverses the trees from open[begin, end) on, over the first batch. Entries that stay undecided are left in
 /// `pieces_`.
 inline void PairSearch::descendIntoPieces(const Buffer<Entry>& open, int begin, int end) {
+  int first_of_pair = pieces_.size();
   for (int i = begin; i < end && !horizon_.isOver(); ++i) {
     const Entry e = open[i];
+    if (i == begin || open[i - 1].pair != e.pair) first_of_pair = pieces_.size();
     if (!e.mask) continue;
     const Seen seen = motions_.of(e.pair, whole());
     bool whole_first = movesFar(seen) && !e.within;
@@ -393,7 +401,7 @@ inline void PairSearch::descendIntoPieces(const Buffer<Entry>& open, int begin, 
       Entry& piece = pieces_.grow() = {e.pair, e.a, e.b, e.mask};
       piece.deep = e.deep;
     } else {
-      traversal_.descend(motions_.of(e.pair, whole()), {e.pair, e.a, e.b, e.mask}, aim(), pieces_);
+      traversal_.descend(motions_.of(e.pair, whole()), {e.pair, e.a, e.b, e.mask}, aim(), pieces_, first_of_pair);
     }
   }
 }

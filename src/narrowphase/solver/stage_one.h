@@ -21,6 +21,11 @@ FCL_ARTIC_INLINE void prefetch(const T* object) {
 /// take longer, up to 4 times; below 0.4 contacts do, as a link meets many nodes at once.
 constexpr double kPatchSize = 1;
 
+/// Maximum number of a large body's upper nodes that are looked at for one link; what is below the others is left to
+/// the search as it is. Boxes far from the origin are no smaller than a float's rounding: without a bound each piece of
+/// such a body would be a patch.
+constexpr int kMaxUpperNodes = 128;
+
 /// An obstacle, and the lanes in which its box meets that of a mover.
 struct BoxHit {
   std::int32_t obstacle;
@@ -29,7 +34,7 @@ struct BoxHit {
 
 /// A large body's upper node that is to be looked at, and the lanes in which its box meets that of a mover.
 struct OpenUpper {
-  std::int32_t node;
+  std::int32_t upper, node;  ///< the same node, of the upper levels and of the tree
   unsigned mask;
 };
 
@@ -67,6 +72,7 @@ class StageOne : PartOfSolver {
   void expectContact(PairId pair, int mover, const engine::StillBounds& obstacle, unsigned mask,
                      const NearestToBox& nearest);
   void sweptInWorld(int mover, engine::SweptLink* parts) const;
+  void sweepInPartner(PairId pair, const double* lss, SweptLss& s);
   void sweptInPartner(PairId pair, const double* lss, engine::SweptLink* parts);
   void takeAdvice(const engine::Advisor& advisor, Traversal& traversal, Buffer<Entry>& open);
   bool looksForAny() const { return query().any && !query().every_pair && contacts_.watching(); }
@@ -207,20 +213,30 @@ inline void StageOne::expectContact(PairId pair, int mover, const engine::StillB
 /// those of its parts, in the body's tree frame. All that is left out is proven apart: so is all that is below it.
 /// @param lss  the link's, as seen from the tree's frame.
 inline void StageOne::cullPatches(PairId pair, const TreeView& tree, const SweptLss& lss, unsigned mask,
-                                  Buffer<Entry>& open) {
+                                  Buffer<Entry>& all_open) {
   const double margin = query().margins.of(pair);
   SweptBox parts;
   boundLss(lss, margin, parts);
   float ends[6];
   endsOfWhole(parts, ends);
   const SweptBox whole = spreadBox(ends, ends + 3);
-  const double size = kPatchSize * lss.radius;
-  const int first = open.size();
+  const double size = kPatchSize * (lss.radius + margin);
+  const int first = all_open.size();
+  const auto open = [&](int node, unsigned lanes) {
+    NearestToBox nearest;
+    lanes &= ~certainlyApart(lss, boxOfNode(tree.nodes[node]), OwnFrame(), margin, nearest);
+    if (lanes) openPatch({pair, node, 0, lanes}, lss.radius, nearest, all_open);
+  };
   open_upper_.clear();
-  open_upper_.push({0, mask});
-  for (int i = 0; i < open_upper_.size(); ++i) {
+  open_upper_.push({0, 0, mask});
+  for (int i = 0; i < open_upper_.size() && !horizon_.mustEnd(); ++i) {
     const OpenUpper at = open_upper_[i];
-    const engine::UpperNode& upper = tree.upper[at.node];
+    ++statistics().node_tests;
+    if (i >= kMaxUpperNodes) {
+      open(at.node, at.mask);
+      continue;
+    }
+    const engine::UpperNode& upper = tree.upper[at.upper];
     for (unsigned left = kAllLanes & ~apart(whole, load(upper.boxes)); left; left &= left - 1) {
       const int child = __builtin_ctz(left);
       const std::int32_t node = upper.node[child];
@@ -228,21 +244,19 @@ inline void StageOne::cullPatches(PairId pair, const TreeView& tree, const Swept
       if (!met) continue;
       const std::int32_t below = upper.upper[child];
       if (below >= 0 && tree.nodes[node].radius > size) {
-        open_upper_.push({below, met});
+        open_upper_.push({below, node, met});
         prefetch(tree.upper + below);
-        continue;
+      } else {
+        open(node, met);
       }
-      NearestToBox nearest;
-      const unsigned left_open = met & ~certainlyApart(lss, boxOfNode(tree.nodes[node]), OwnFrame(), margin, nearest);
-      if (left_open) openPatch({pair, node, 0, left_open}, lss.radius, nearest, open);
     }
   }
   if (!looksForAny()) return;
   int best = -1;
-  for (int i = first; i < open.size(); ++i) {
-    if (open[i].deepest >= 0 && (best < 0 || open[i].nearness < open[best].nearness)) best = i;
+  for (int i = first; i < all_open.size(); ++i) {
+    if (all_open[i].deepest >= 0 && (best < 0 || all_open[i].nearness < all_open[best].nearness)) best = i;
   }
-  if (best >= 0) any_.tryPatch(open[best]);
+  if (best >= 0) any_.tryPatch(all_open[best]);
 }
 
 /// Appends a node of a large body. If the link is deep in it, contact is suspected there, or, if any contact will do,
@@ -260,6 +274,23 @@ inline void StageOne::openPatch(const Entry& patch, double radius, const Nearest
   for (int k = 0; k < kLanes; ++k) least = deep >> k & 1 ? min(least, nearest.square[k]) : least;
   entry.deepest = static_cast<std::int8_t>(middleLane(deep & ~greater(nearest.square, Lanes(least))));
   entry.nearness = static_cast<float>(sqrt(least) / radius);
+}
+
+/// The line swept sphere of the link B of a pair of two bodies that move, seen from A's tree frame, where A stands
+/// still. All that the motion leaves out or rounds is in the radius.
+/// @param lss  in B's tree frame.
+inline void StageOne::sweepInPartner(PairId pair, const double* lss, SweptLss& s) {
+  const Seen seen = motions_.of(pair, whole());
+  s.radius = s.ulps = s.rate = 0;
+  Lanes sizes(0.0);
+  for (int end = 0; end < 2; ++end) {
+    const Vec3 p(lss + 3 * end);
+    s.radius = max(s.radius, lss[6] + seen->seePoint(p, s.end[end]));
+    for (const Vec3Lanes& c : s.end[end].c) sizes = sizes + abs(c[0]) + abs(c[1]) + abs(c[2]);
+  }
+  const Vec3Lanes e = s.end[1].c[0] - s.end[0].c[0];
+  s.per_square = Lanes(1.0) / max(dot(e, e), Lanes(kLeastSquare));
+  s.sizes = maxLane(sizes) + s.radius;
 }
 
 inline void StageOne::cullObstacles(int mover, Buffer<Entry>& open) {
@@ -333,6 +364,13 @@ inline void StageOne::cullLinks(Buffer<Entry>& open) {
     }
     if (!mask) return;
     if (links && any) any_.considerLinks(pair, square, mover_lss_[mover_a].radius + mover_lss_[mover_b].radius);
+    const PairParts bodies = problem().parts(pair);
+    const TreeView& tree = *body(bodies.a).tree;
+    if (tree.upper && body(bodies.b).tree_lss) {
+      SweptLss seen;
+      sweepInPartner(pair, body(bodies.b).tree_lss, seen);
+      return cullPatches(pair, tree, seen, mask, open);
+    }
     open.push({pair, 0, 0, mask});
   };
   for (int i = 0; i < met_pairs_.size(); ++i) {
@@ -395,14 +433,9 @@ inline void StageOne::sweptInWorld(int mover, engine::SweptLink* parts) const {
 /// The same of the link B of a pair of two bodies that move, seen from A's tree frame, where A stands still.
 /// @param lss  in B's tree frame.
 inline void StageOne::sweptInPartner(PairId pair, const double* lss, engine::SweptLink* parts) {
-  const Seen seen = motions_.of(pair, whole());
-  PointLanes ends[2];
-  double radius = 0;
-  for (int end = 0; end < 2; ++end) {
-    const Vec3 p(lss + 3 * end);
-    radius = max(radius, lss[6] + seen->seePoint(p, ends[end]));
-  }
-  for (int lane = 0; lane < kLanes; ++lane) sweptOver(lane, ends, radius, parts[lane]);
+  SweptLss s;
+  sweepInPartner(pair, lss, s);
+  for (int lane = 0; lane < kLanes; ++lane) sweptOver(lane, s.end, s.radius, parts[lane]);
 }
 
 inline void StageOne::refine(Traversal& traversal, Buffer<Entry>& open) {

@@ -133,7 +133,6 @@ struct OwnFrame {
 /// the radius grows (doc/NUMERICS.md, "Line swept spheres").
 FCL_ARTIC_INLINE void seeFrom(const Placement& inverse, const SweptLss& s, SweptLss& seen) {
   seen = s;
-  if (inverse.identity) return;
   const Mat3 R(inverse.R);
   for (PointLanes& end : seen.end) {
     for (Vec3Lanes& c : end.c) c = R * c;

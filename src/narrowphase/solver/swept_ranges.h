@@ -10,6 +10,11 @@ namespace FCL_ARTIC_ISA {
 /// along it. One plane mostly keeps a link apart from many patches: each takes a single look at its few vertices then.
 class SweptRanges {
  public:
+  /// A new query: none is known. (Epochs may begin anew with it.)
+  void forget() {
+    epoch_ = -1;
+    count_ = next_ = 0;
+  }
   /// Lanes of `mask` in which one of the directions certainly keeps B's hull apart from a piece of A. Starts anew for
   /// another pair or batch.
   unsigned separate(Seen seen, const Piece& still, unsigned mask, std::uint64_t& certificates) {

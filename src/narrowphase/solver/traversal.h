@@ -83,6 +83,7 @@ class Traversal : PartOfSolver {
       stack.clear();  // if the caller's progress threw, entries of the last query are still here
     free_nodes_.clear();
     simplices_.begin();
+    ranges_.forget();
     rods_throttle_.begin();
     roots_tested_ = -1;
   }
@@ -103,12 +104,17 @@ class Traversal : PartOfSolver {
   HullTest hullsMayTouch(Seen seen, const Entry& e, bool suspect, LaneSearch search);
 
   /// Goes down from a pair of nodes in the lanes of `mask`. Entries that stay undecided are appended to `open`.
-  void descend(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open);
+  void descend(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open) {
+    descend(seen, root, aim, open, open.size());
+  }
+  /// The same for one of several patches of a body.
+  /// @param begin  of the pair's entries in `open`: they count together (kMaxOpen).
+  void descend(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open, int begin);
   /// Lanes of `mask` in which the pair's bodies are not certainly apart.
   unsigned blockedLanes(Seen seen, unsigned mask);
 
  private:
-  unsigned traverse(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open);
+  unsigned traverse(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open, int begin);
   unsigned partsMayTouch(Seen seen, int a, int b, unsigned mask);
   unsigned apartFromUnbounded(Seen seen, int a, int b);
   unsigned apartAcrossRods(Seen seen, const Node& a, const Node& b, unsigned mask);
@@ -246,7 +252,7 @@ inline unsigned Traversal::notSeparated(Seen seen, const PiecePair& pieces, unsi
     // In the frame of the piece with more vertices first: the still piece's range takes one direction, the moving
     // one's 24.
     const Vec3 n = body.opposite(g.n);
-    const int first = a.num_vertices > b.num_vertices ? 0 : 1;
+    const int first = search.ranges || a.num_vertices > b.num_vertices ? 0 : 1;
     for (int i = 0; i < 2 && mask; ++i) {
       mask &= ~((first + i) & 1 ? separated(seen->side(1), b, a, n, mask) : separatedAlong(g.n));
     }
@@ -290,6 +296,7 @@ inline Traversal::HullTest Traversal::hullsMayTouch(Seen seen, const Entry& e, b
   if (e.isWhole() && isWithin(seen)) return {e.mask, true, 0};
   unsigned mask = e.mask, overlaps = 0;
   SweptRanges* const ranges = e.a != 0 && e.b == 0 ? &ranges_ : nullptr;
+  if (ranges) ++statistics().node_tests;
   if (ranges && !(mask &= ~ranges->separate(seen, *a, mask, statistics().certificates))) return {0, false, 0};
   const DirectionSearch of_hulls = {kMaxHullOverlaps, simplexOf(e), search, ranges};
   mask = notSeparated(seen, {*a, *b}, mask, of_hulls, [&](int lane) {
@@ -304,9 +311,8 @@ inline Traversal::HullTest Traversal::hullsMayTouch(Seen seen, const Entry& e, b
 /// into convex parts by them.
 inline unsigned Traversal::partsMayTouch(Seen seen, int a, int b, unsigned mask) {
   const auto part = [](const TreeView& tree, int node, const TreeView& other) -> const Piece* {
-    const bool whole =
-        tree.num_pieces == 1 ||
-        (node == 0 && ((tree.parts && !tree.upper) || tree.nodes[0].radius < kLargerNode * other.nodes[0].radius));
+    const bool whole = tree.num_pieces == 1 ||
+                       (node == 0 && (tree.parts || tree.nodes[0].radius < kLargerNode * other.nodes[0].radius));
     if (whole) return tree.outer;
     return tree.part_of_node && tree.part_of_node[node] >= 0 ? tree.parts + tree.part_of_node[node] : nullptr;
   };
@@ -345,29 +351,27 @@ inline bool Traversal::isKnownFree(PairId pair, int node) const {
   return free;
 }
 
-inline void Traversal::descend(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open) {
+inline void Traversal::descend(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open, int begin) {
   FCL_ARTIC_ASSERT(aim != Aim::freeLanes);
-  traverse(seen, root, aim, open);
+  traverse(seen, root, aim, open, begin);
 }
 
 inline unsigned Traversal::blockedLanes(Seen seen, unsigned mask) {
   FCL_ARTIC_ASSERT(horizon_.live() == kAllLanes && horizon_.contactLane() == 0);  // all are looked at
   mask = nodesMayTouch(seen, 0, 0, mask);
   if (mask) mask = hullsMayTouch(seen, {seen->pair(), 0, 0, mask}, false, {}).mask;
-  return mask ? traverse(seen, {seen->pair(), 0, 0, mask}, Aim::freeLanes, undecided_) : 0;
+  return mask ? traverse(seen, {seen->pair(), 0, 0, mask}, Aim::freeLanes, undecided_, 0) : 0;
 }
 
 /// Dual traversal. Entries that stay undecided are appended to `open`. With Aim::freeLanes none is: the lanes that are
 /// not proven free are returned.
-inline unsigned Traversal::traverse(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open) {
+inline unsigned Traversal::traverse(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open, int begin) {
   FCL_ARTIC_ASSERT(root.pair == seen->pair() && root.mask != 0 && root.mask <= kAllLanes);
   const Node *A = seen->a().nodes, *B = seen->b().nodes;
   // Earliest lane first: once a contact is found, nothing was spent on later lanes alone.
   const auto push = [&](const Entry& e) { stack_[__builtin_ctz(e.mask)].push(e); };
   const double split_time = aim == Aim::split ? kSplitTime * seen->amplitude() : 0;
-  const int max_open = aim == Aim::split   ? open.size() + kMaxOpen
-                       : aim == Aim::poses ? open.size() + kMaxOpenAtPoses
-                                           : 0x7fffffff;
+  const int max_open = aim == Aim::split ? begin + kMaxOpen : aim == Aim::poses ? begin + kMaxOpenAtPoses : 0x7fffffff;
   unsigned blocked = 0;
   Entry e = root;
   bool held = true;  // e goes on with a child; else it is the next of the stacks
