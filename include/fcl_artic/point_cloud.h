@@ -22,7 +22,7 @@ namespace fcl_artic {
 ///     manager.registerObject(std::make_shared<fcl::CollisionObjectd>(cloud), "scan");
 ///
 /// A contact's b1 or b2 is the number of the point that is touched. A cloud cannot be changed: make another one. About
-/// 200 bytes a point are taken where it is read.
+/// 145 bytes a point are taken where it is read, beside the 24 of the cloud itself.
 class FCL_ARTIC_EXPORT PointCloud : public fcl::CollisionGeometryd {
  public:
   /// @param points  in m, in the geometry's own frame; at least one.
@@ -34,6 +34,10 @@ class FCL_ARTIC_EXPORT PointCloud : public fcl::CollisionGeometryd {
   /// @param radii   one for each point, in m.
   /// @throws std::invalid_argument as above, and when there are not as many radii as points.
   PointCloud(std::vector<Eigen::Vector3d> points, std::vector<double> radii);
+  /// Copies all points.
+  PointCloud(const PointCloud&) = default;
+  /// Nobody changes a cloud: whoever holds one need not look again.
+  PointCloud& operator=(const PointCloud&) = delete;
 
   /// The points, in m, in the geometry's own frame.
   const std::vector<Eigen::Vector3d>& points() const { return points_; }
