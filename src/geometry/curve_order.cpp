@@ -17,7 +17,7 @@
 namespace fcl_artic {
 namespace {
 
-/// Cells along each axis, as a power of two.
+/// CurveCells along each axis, as a power of two.
 constexpr int kBits = 10;
 /// Up to this number of points of one cell are split at the middle of their longest axis. More get finer cells, this
 /// many times: then no point that lies far from all others makes the cells too coarse for these. (Measured: to split
@@ -27,7 +27,7 @@ constexpr int kMostCells = 3;
 /// From this number of points on the work goes over threads, which wait for each other at each digit.
 constexpr std::size_t kManyPoints = 1 << 17;
 
-struct Box {
+struct PlaceBox {
   Eigen::Array3d lo = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
   bool is_good = true;  ///< no coordinate was infinite, NaN or too far away
   void add(const double* point) {
@@ -36,7 +36,7 @@ struct Box {
     hi = hi.max(x);
     is_good &= (x.abs() <= kFarthest).all();
   }
-  void add(const Box& other) {
+  void add(const PlaceBox& other) {
     lo = lo.min(other.lo);
     hi = hi.max(other.hi);
     is_good &= other.is_good;
@@ -57,8 +57,8 @@ std::uint32_t spreadBits(std::uint32_t x) {
 }
 
 /// The cells of a cube that holds a box: equal along all axes, so that a cell is no longer in one than in another.
-struct Cells {
-  explicit Cells(const Box& box) : scale((1 << kBits) / box.longest()) {
+struct CurveCells {
+  explicit CurveCells(const PlaceBox& box) : scale((1 << kBits) / box.longest()) {
     std::copy_n(box.lo.data(), 3, lo);
     // (Sizes whose quotient is no number are next to none: all points are in one cell, and are split at the middle.)
     if (!(scale <= std::numeric_limits<double>::max())) scale = 0;
@@ -132,7 +132,7 @@ CurveOrder::CurveOrder(PointsAt points, std::size_t size, int threads) : points_
 void CurveOrder::layCells(Range range, int threads) {
   CurvePlace* const places = places_.data() + range.begin;
   const std::size_t size = range.size(), shares = threadsFor(threads);
-  std::vector<Box> boxes(shares);
+  std::vector<PlaceBox> boxes(shares);
   const auto inShares = [&](const auto& act) {
     parallelFor(shares, threads, [&](std::size_t s) {
       const std::size_t end = shareBegin(size, s + 1, shares);
@@ -142,7 +142,7 @@ void CurveOrder::layCells(Range range, int threads) {
   inShares([&](std::size_t s, const CurvePlace& place) { boxes[s].add(points_[place.number]); });
   for (std::size_t s = 1; s < shares; ++s) boxes[0].add(boxes[s]);
   if (!boxes[0].is_good) throw std::invalid_argument("a place is not finite or beyond 1e9 m");
-  const Cells cells(boxes[0]);
+  const CurveCells cells(boxes[0]);
   inShares([&](std::size_t, CurvePlace& place) { place.key = cells.key(points_[place.number]); });
   if (size > 1024) return sortByKey(places, size, threads);
   std::sort(places, places + size, [](const CurvePlace& a, const CurvePlace& b) {
@@ -174,7 +174,7 @@ std::size_t CurveOrder::splitAtMiddle(Range range) {
   const std::size_t half = (range.begin + range.end) / 2;
   if (range.size() == 2) return half;
   CurvePlace* const places = places_.data();
-  Box box;
+  PlaceBox box;
   for (std::size_t i = range.begin; i < range.end; ++i) box.add(points_[places[i].number]);
   const int axis = box.longestAxis();
   // All keys get equal: the parts are split in this way too.
