@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -353,6 +355,28 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// not count.
   /// @throws std::invalid_argument, std::logic_error as for a motion.
   [[nodiscard]] Clearance clearance(const JointTrajectory& trajectory, const ClearanceRequest& request = {}) const;
+
+  /// Drops points that a sensor has seen of the robot itself. These lie in or within `padding` of the geometry that
+  /// links carry at q, attached objects included; obstacles do not count. A mesh is its surface, unless it is a solid.
+  /// The others keep their order.
+  ///
+  /// It is certain that no point farther than `padding` is dropped, if the padding is more than twice the links' error
+  /// by rounding. For an arm that is some 1e-12 m (doc/NUMERICS.md, "Points on the robot"). A point that is nearer may
+  /// stay: by no more than that error, or where a search for the nearest point of a hull, cone or ellipsoid ends early.
+  /// @param points  in m; what is not finite stays.
+  /// @param q       tree().dof() joint values, rad or m.
+  /// @param padding  m, at least 0: how far sensor and model err.
+  /// @param frame   pose of the points' frame in the world.
+  /// @return how many were dropped.
+  /// @throws std::invalid_argument as collide(), for another padding, and for a frame that is not rigid to 1e-6.
+  /// @throws std::logic_error as collide().
+  std::size_t removeSelf(std::vector<Eigen::Vector3d>& points, const Eigen::VectorXd& q, double padding = 0,
+                         const Eigen::Isometry3d& frame = Eigen::Isometry3d::Identity()) const;
+  /// Returns for each point whether removeSelf() would drop it: 1, or 0.
+  /// @throws std::invalid_argument, std::logic_error as removeSelf().
+  [[nodiscard]] std::vector<std::uint8_t> pointsOnSelf(
+      const std::vector<Eigen::Vector3d>& points, const Eigen::VectorXd& q, double padding = 0,
+      const Eigen::Isometry3d& frame = Eigen::Isometry3d::Identity()) const;
 
   /// Returns the query continuousCollide(motion, request) as text in JSON: robot, geometry, obstacles, allowed pairs,
   /// margins, motion and request. readQuery() (fcl_artic/query_text.h) reads the text, also in another process, and the

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fcl/fcl_geometry.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -200,17 +201,6 @@ const PointCloud* asCloud(const fcl::CollisionGeometry<S>& geometry) {
   return nullptr;
 }
 
-std::shared_ptr<const ShapeTree> readCloud(const PointCloud& cloud) {
-  std::vector<Piece> balls(cloud.points().size());
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    balls[i].kind = PieceKind::point;
-    balls[i].primitive = static_cast<std::int32_t>(i);
-    balls[i].radius = cloud.radius(i);
-    Eigen::Vector3d::Map(balls[i].center) = cloud.points()[i];
-  }
-  return ShapeTree::fromPieces(std::move(balls));
-}
-
 /// The tree of a mesh, made once for all geometries with these bytes.
 template <class S>
 std::shared_ptr<const ShapeTree> readCached(const Mesh<S>& mesh, const fcl::CollisionGeometry<S>& geometry) {
@@ -294,7 +284,7 @@ std::shared_ptr<const ShapeTree> read(const fcl::CollisionGeometry<S>& geometry,
       return CellReader<S>(static_cast<const fcl::OcTree<S>&>(geometry)).read();
 #endif
     default:
-      if (const PointCloud* cloud = asCloud(geometry)) return readCloud(*cloud);
+      if (const PointCloud* cloud = asCloud(geometry)) return ShapeTree::fromBalls(cloud->points(), cloud->radii());
       throw std::invalid_argument("this type of geometry is not supported");
   }
   return ShapeTree::fromPiece(piece);
@@ -462,7 +452,15 @@ std::shared_ptr<const ShapeTree> readGeometry(const fcl::CollisionGeometry<S>& g
   return readNamed(geometry, false);
 }
 
-GeometryContent::GeometryContent(const fcl::CollisionGeometryd& geometry) {
+bool neverChanges(const fcl::CollisionGeometryd& geometry) {
+  return asCloud(geometry) != nullptr;
+}
+
+GeometryContent::GeometryContent(const fcl::CollisionGeometryd& geometry, std::shared_ptr<const ShapeTree> tree) {
+  if (tree && asCloud(geometry)) {
+    balls_ = std::move(tree);
+    return;
+  }
   std::size_t size = 0;
   visitContent(geometry, [&](const void*, std::size_t n) {
     size += n;
@@ -476,7 +474,39 @@ GeometryContent::GeometryContent(const fcl::CollisionGeometryd& geometry) {
   });
 }
 
+namespace {
+
+/// Whether the tree is that of these balls, bit for bit: it has the number of each.
+bool isOfBalls(const engine::TreeView& tree, const PointCloud& cloud) {
+  const std::vector<Eigen::Vector3d>& points = cloud.points();
+  if (points.size() != static_cast<std::size_t>(tree.num_pieces)) return false;
+  return std::all_of(tree.pieces, tree.pieces + tree.num_pieces, [&](const Piece& ball) {
+    const auto i = static_cast<std::size_t>(ball.primitive);
+    const double radius = cloud.radius(i);
+    return std::memcmp(points[i].data(), ball.center, sizeof ball.center) == 0 && radius == ball.radius;
+  });
+}
+
+bool haveSameBalls(const engine::TreeView& a, const engine::TreeView& b) {
+  return std::equal(a.pieces, a.pieces + a.num_pieces, b.pieces, b.pieces + b.num_pieces,
+                    [](const Piece& one, const Piece& other) {
+                      return one.primitive == other.primitive && one.radius == other.radius &&
+                             std::memcmp(one.center, other.center, sizeof one.center) == 0;
+                    });
+}
+
+}  // namespace
+
+bool GeometryContent::sameAs(const GeometryContent& other) const {
+  if (balls_ && other.balls_) return balls_ == other.balls_ || haveSameBalls(balls_->view(), other.balls_->view());
+  return !balls_ && !other.balls_ && bytes_ == other.bytes_;
+}
+
 bool GeometryContent::sameAs(const fcl::CollisionGeometryd& geometry) const {
+  if (balls_) {
+    const PointCloud* cloud = asCloud(geometry);
+    return cloud && isOfBalls(balls_->view(), *cloud);
+  }
   std::size_t at = 0;
   bool same = true;
   try {

@@ -50,24 +50,29 @@ struct MeshArrays {
 template <class S>
 bool asMesh(const fcl::CollisionGeometry<S>& geometry, MeshArrays<S>& mesh);
 
+/// Whether nobody can change the geometry in place: a PointCloud. The same object is the same content then.
+bool neverChanges(const fcl::CollisionGeometryd& geometry);
+
 /// All that readGeometry() reads of a geometry, copied, to see whether its owner has changed it in place:
 /// - its type,
 /// - the numbers of a shape,
 /// - a mesh's vertices and triangles and whether it is a solid,
 /// - an OcTree's occupied cells,
-/// - a cloud's points and radii.
+/// - a cloud's points and radii: the tree has all of them, and is held in place of a copy.
 ///
 /// Equal contents give equal trees.
 class GeometryContent {
  public:
   /// The geometry must have been read, that is, not refused.
-  explicit GeometryContent(const fcl::CollisionGeometryd& geometry);
+  /// @param tree  that was read of it; null: unknown.
+  explicit GeometryContent(const fcl::CollisionGeometryd& geometry, std::shared_ptr<const ShapeTree> tree = nullptr);
   /// Whether the geometry, this one or another, is byte for byte what was copied. It may be one that is refused.
   bool sameAs(const fcl::CollisionGeometryd& geometry) const;
-  bool sameAs(const GeometryContent& other) const { return bytes_ == other.bytes_; }
+  bool sameAs(const GeometryContent& other) const;
 
  private:
   std::vector<char> bytes_;
+  std::shared_ptr<const ShapeTree> balls_;  ///< of a cloud, in place of the bytes
 };
 
 #if FCL_HAVE_OCTOMAP

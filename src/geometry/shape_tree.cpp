@@ -12,12 +12,15 @@
 #include <Eigen/Geometry>
 
 #include "geometry/closed_parts.h"
+#include "geometry/curve_tree.h"
+#include "geometry/node_boxes.h"
 #include "geometry/outer_hull.h"
 #include "geometry/solid_space.h"
 #include "geometry/wide_tree.h"
 #include "numerics/baseline_isa.h"
 
 #include "convex/piece_kinds.h"
+#include "numerics/assertion.h"
 #include "numerics/constants.h"
 
 namespace fcl_artic {
@@ -30,56 +33,18 @@ using engine::PieceKind;
 /// With this number, three coordinates for each point are counted in 32 bits.
 constexpr std::size_t kMaxHullPoints = 500000000;
 
-/// Two floats above the nearest to x: surely not below x, whatever the rounding mode.
-float roundUpToFloat(double x) {
-  const float f = static_cast<float>(x);
-  std::int32_t bits;
-  std::memcpy(&bits, &f, sizeof bits);
-  // Floats in the order of integers, both zeros in one place, and back.
-  constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
-  const std::int32_t order = (bits < 0 ? kLeast - bits : bits) + 2;
-  bits = order < 0 ? kLeast - order : order;
-  float up;
-  std::memcpy(&up, &bits, sizeof up);
-  return up;
-}
-float roundDown(double x) {
-  return -roundUpToFloat(-x);
-}
-
-void setRadius(Node& node) {
-  double radius = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double half = 0.5 * (static_cast<double>(node.hi[k]) - static_cast<double>(node.lo[k]));
-    radius += half * half;
-  }
-  node.radius = roundUpToFloat(std::sqrt(radius));
-}
-
-Node makeLeaf(const BoxBounds& box, std::int32_t piece) {
-  Node node;
-  for (int k = 0; k < 3; ++k) {
-    node.lo[k] = roundDown(box.lo[k]);
-    node.hi[k] = roundUpToFloat(box.hi[k]);
-  }
-  setRadius(node);
-  node.child = ~piece;
-  return node;
-}
-
-/// The tree over given leaves; leaf i holds piece i.
+/// The tree over given leaves, one at least; leaf i holds piece i.
 class Builder {
  public:
-  explicit Builder(const std::vector<Node>& leaves) : leaves_(leaves), order_(leaves.size()), keys_(leaves.size()) {
+  /// @param nodes  2 a leaf.
+  Builder(const std::vector<Node>& leaves, Node* nodes)
+      : leaves_(leaves), order_(leaves.size()), keys_(leaves.size()), nodes_(nodes) {
     for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<std::uint32_t>(i);
   }
-  std::vector<Node> run() {
-    if (leaves_.empty()) return {};
-    nodes_.resize(2 * leaves_.size());
+  void run() {
     used_ = 2;
     build(0, 0, leaves_.size());
     nodes_[1] = nodes_[0];
-    return std::move(nodes_);
   }
 
  private:
@@ -128,7 +93,7 @@ class Builder {
   const std::vector<Node>& leaves_;
   std::vector<std::uint32_t> order_;
   std::vector<std::uint64_t> keys_;
-  std::vector<Node> nodes_;
+  Node* const nodes_;
   std::size_t used_ = 0;
 };
 
@@ -181,7 +146,9 @@ BoxBounds addTriangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const 
 std::vector<Node> buildBoxTree(const std::vector<BoxBounds>& boxes) {
   std::vector<Node> leaves(boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) leaves[i] = makeLeaf(boxes[i], static_cast<std::int32_t>(i));
-  return Builder(leaves).run();
+  std::vector<Node> nodes(2 * leaves.size());
+  if (!leaves.empty()) Builder(leaves, nodes.data()).run();
+  return nodes;
 }
 
 ShapeTree::ShapeTree(Private) {}
@@ -194,7 +161,7 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromTriangles(const std::vector<Eige
   requirePoints(vertices);
   auto tree = std::make_shared<ShapeTree>(Private());
   std::vector<Node> leaves(triangles.size());
-  tree->pieces_.resize(triangles.size());
+  tree->pieces_ = LargeArray<Piece>(triangles.size());
   tree->vertices_.reserve(9 * triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const Eigen::Vector3d* v[3];
@@ -206,10 +173,12 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromTriangles(const std::vector<Eige
       v[k] = &vertices[static_cast<std::size_t>(index)];
     }
     Piece& piece = tree->pieces_[i];
+    piece = Piece();
     piece.primitive = static_cast<std::int32_t>(i);
     leaves[i] = makeLeaf(addTriangle(*v[0], *v[1], *v[2], tree->vertices_, piece), piece.primitive);
   }
-  tree->nodes_ = Builder(leaves).run();
+  tree->nodes_ = LargeArray<Node>(2 * leaves.size());
+  Builder(leaves, tree->nodes_.data()).run();
   tree->show();
   if (solid) {
     const std::string reason = whyNoSolid(tree->view_);
@@ -276,7 +245,7 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromPiece(const Piece& piece) {
   return tree;
 }
 
-std::shared_ptr<const ShapeTree> ShapeTree::fromPieces(std::vector<Piece> pieces) {
+std::shared_ptr<const ShapeTree> ShapeTree::fromPieces(const std::vector<Piece>& pieces) {
   if (pieces.size() == 1) return fromPiece(pieces[0]);
   if (pieces.empty()) {
     Piece point;
@@ -290,11 +259,33 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromPieces(std::vector<Piece> pieces
     return tree;
   }
   auto tree = std::make_shared<ShapeTree>(Private());
-  std::vector<Node> leaves(pieces.size());
-  for (std::size_t i = 0; i < pieces.size(); ++i)
-    leaves[i] = makeLeaf(measure(pieces[i]), static_cast<std::int32_t>(i));
-  tree->pieces_ = std::move(pieces);
-  tree->nodes_ = Builder(leaves).run();
+  tree->pieces_ = LargeArray<Piece>(pieces.size());
+  tree->nodes_ = LargeArray<Node>(2 * pieces.size());
+  std::copy(pieces.begin(), pieces.end(), tree->pieces_.data());
+  CurveBuilder({tree->pieces_[0].center, kPieceStride}, pieces.size(), 0, tree->pieces_.data(), tree->nodes_.data(),
+               measure)
+      .build();
+  tree->show();
+  return tree;
+}
+
+std::shared_ptr<const ShapeTree> ShapeTree::fromBalls(const std::vector<Eigen::Vector3d>& centers,
+                                                      const std::vector<double>& radii, int threads) {
+  FCL_ARTIC_ASSERT(!centers.empty() && (radii.size() == 1 || radii.size() == centers.size()));
+  const auto ball = [&](std::size_t i) {
+    Piece piece;
+    piece.kind = PieceKind::point;
+    piece.primitive = static_cast<std::int32_t>(i);
+    piece.radius = radii[radii.size() == 1 ? 0 : i];
+    std::copy_n(centers[i].data(), 3, piece.center);
+    return piece;
+  };
+  if (centers.size() == 1) return fromPiece(ball(0));
+  auto tree = std::make_shared<ShapeTree>(Private());
+  tree->pieces_ = LargeArray<Piece>(centers.size());
+  tree->nodes_ = LargeArray<Node>(2 * centers.size());
+  CurveBuilder({centers[0].data(), 3}, centers.size(), threads, tree->pieces_.data(), tree->nodes_.data(), measure)
+      .put(ball);
   tree->show();
   return tree;
 }
@@ -373,8 +364,7 @@ const SurfacePoints* ShapeTree::surfacePoints() const {
 }
 
 std::size_t ShapeTree::bytes() const {
-  return sizeof(*this) + nodes_.capacity() * sizeof(Node) + pieces_.capacity() * sizeof(Piece) +
-         vertices_.capacity() * sizeof(double) + hulls_.bytes();
+  return sizeof(*this) + nodes_.bytes() + pieces_.bytes() + vertices_.capacity() * sizeof(double) + hulls_.bytes();
 }
 
 const LineSweptSphere& ShapeTree::lineSweptSphere() const {
@@ -397,7 +387,8 @@ LineSweptSphere ShapeTree::makeLineSweptSphere() const {
       baseline::coverCore(view_, p, [&](double x, double y, double z) { points.emplace_back(x, y, z); });
       continue;
     }
-    for (int corner = 0; corner < 8; ++corner) {
+    const int corners = p.kind == PieceKind::point ? 1 : 8;  // they are one point
+    for (int corner = 0; corner < corners; ++corner) {
       Eigen::Vector3d x;
       for (int k = 0; k < 3; ++k) x[k] = p.center[k] + ((corner >> k & 1) ? half[k] : -half[k]);
       points.push_back(x);

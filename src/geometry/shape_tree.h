@@ -11,6 +11,7 @@
 
 #include "geometry/convex_parts.h"
 #include "geometry/inner_balls.h"
+#include "geometry/large_array.h"
 #include "geometry/line_swept_sphere.h"
 #include "geometry/obb_tree.h"
 #include "geometry/packed_hulls.h"
@@ -46,7 +47,12 @@ class ShapeTree {
   /// plane: a unit normal; the whole is unbounded then, and its box ends at engine::kUnbounded.
   static std::shared_ptr<const ShapeTree> fromPiece(const engine::Piece& piece);
   /// Bounded pieces without vertices, their primitive ids as given; empty for none.
-  static std::shared_ptr<const ShapeTree> fromPieces(std::vector<engine::Piece> pieces);
+  static std::shared_ptr<const ShapeTree> fromPieces(const std::vector<engine::Piece>& pieces);
+  /// Balls, one at least, their numbers as primitive ids; they are put into another order.
+  /// @param radii  one for all, or one each; finite, at least 0.
+  /// @param threads  at most; 0: as many as the machine runs at once. The tree does not depend on it.
+  static std::shared_ptr<const ShapeTree> fromBalls(const std::vector<Eigen::Vector3d>& centers,
+                                                    const std::vector<double>& radii, int threads = 0);
 
   const engine::TreeView& view() const { return view_; }
   /// The same, a surface cut into convex parts, which are made when first asked for.
@@ -84,8 +90,8 @@ class ShapeTree {
   void makeOuter(const std::vector<Eigen::Vector3d>& points);
   engine::Node root_[2];  ///< a single piece's node: most shapes then need no memory but this object's
   engine::Piece outer_;   ///< the piece around the whole; of a single piece, that piece
-  std::vector<engine::Node> nodes_;
-  std::vector<engine::Piece> pieces_;
+  LargeArray<engine::Node> nodes_;
+  LargeArray<engine::Piece> pieces_;
   std::vector<double> vertices_;
   PackedHulls hulls_;
   engine::TreeView view_;

@@ -22,7 +22,7 @@ std::shared_ptr<const fcl::CollisionGeometryd> geometryOf(const ManagedBody& bod
 bool ManagedBody::isAsRead() const {
   if (moving) return false;
   const std::shared_ptr<const fcl::CollisionGeometryd> current = geometryOf(*this);
-  if (current != geometry || !content->sameAs(*current)) return false;
+  if (current != geometry || !(neverChanges(*current) || content->sameAs(*current))) return false;
   // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): other bits are another reading
   return link >= 0 || std::memcmp(object->getTransform().data(), transform.data(), 16 * sizeof(double)) == 0;
 }
@@ -35,7 +35,8 @@ void ManagedBody::readAgain() {
 void ManagedBody::readShape(const std::string& what) {
   const std::shared_ptr<const fcl::CollisionGeometryd> current = geometryOf(*this);
   if (!current) throw std::invalid_argument(what + ": the object has no geometry");
-  if (!content || !content->sameAs(*current)) {
+  const bool known = content && ((current == geometry && neverChanges(*current)) || content->sameAs(*current));
+  if (!known) {
     try {
       const SharedShape read = readShared(*current);
       shape = read.shape;

@@ -51,7 +51,7 @@ std::uint64_t keyOf(const fcl::CollisionGeometryd& geometry) {
 SharedShape readShared(const fcl::CollisionGeometryd& geometry) {
   const auto read = [&]() -> SharedShape {
     std::shared_ptr<const ShapeTree> shape = readGeometry(geometry);
-    return {std::move(shape), std::make_shared<const GeometryContent>(geometry)};
+    return {shape, std::make_shared<const GeometryContent>(geometry, shape)};
   };
   if (geometry.getObjectType() != fcl::OT_BVH) return read();
   static AllHeld& held = *new AllHeld;  // never destroyed: somebody's static manager may outlive it

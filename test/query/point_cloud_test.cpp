@@ -2,9 +2,14 @@
 // Clouds of points: what as many balls say one by one, in every place where geometry goes.
 #include "fcl_artic/point_cloud.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <iostream>
+#include <limits>
+#include <map>
 #include <random>
 #include <string>
 
@@ -251,6 +256,174 @@ std::string messageOf(const std::function<void()>& call) {
   return "nothing thrown";
 }
 
+namespace {
+
+/// The sign of a sum of doubles, exactly: each partial sum keeps what rounding takes (J. R. Shewchuk 1997).
+int signOfSum(std::vector<double> terms) {
+  std::vector<double> parts;  // none overlaps another, the largest last
+  for (double x : terms) {
+    std::vector<double> next;
+    for (const double y : parts) {
+      const double sum = x + y, bb = sum - x, error = (x - (sum - bb)) + (y - bb);
+      if (error != 0) next.push_back(error);
+      x = sum;
+    }
+    if (x != 0) next.push_back(x);
+    parts = next;
+  }
+  return parts.empty() ? 0 : parts.back() > 0 ? 1 : -1;
+}
+
+/// The terms of a product, exactly.
+void addProduct(double a, double b, double sign, std::vector<double>& terms) {
+  const double product = a * b;
+  terms.push_back(sign * product);
+  terms.push_back(sign * std::fma(a, b, -product));
+}
+
+/// Whether the ball around p lies in the ball around c, exactly: |p - c| <= R - r, by squares of exact differences.
+bool liesIn(const Vector3d& p, double r, const Vector3d& c, double R) {
+  // Differences as two doubles each: high + low.
+  const auto difference = [](double a, double b, double* parts) {
+    parts[0] = a - b;
+    const double bb = parts[0] - a;
+    parts[1] = (a - (parts[0] - bb)) + (-b - bb);
+  };
+  double most[2];
+  difference(R, r, most);
+  if (most[0] < 0) return false;
+  std::vector<double> terms;
+  const auto addSquare = [&](const double* d, double sign) {
+    addProduct(d[0], d[0], sign, terms);
+    addProduct(d[0], 2 * d[1], sign, terms);
+    addProduct(d[1], d[1], sign, terms);
+  };
+  addSquare(most, 1);
+  for (int k = 0; k < 3; ++k) {
+    double d[2];
+    difference(p[k], c[k], d);
+    addSquare(d, -1);
+  }
+  return signOfSum(terms) >= 0;
+}
+
+}  // namespace
+
+/// Each ball of a cloud lies in a ball of the thinned one, by exact arithmetic, and none of these is larger than said.
+/// Faults to put in: the radius not rounded up; the middle of the cube in place of the points'; one axis of two left
+/// out.
+TEST(PointCloud, ThinnedHoldsEveryBall) {
+  std::size_t balls = 0, thinned_balls = 0, tight = 0;
+  for (int round = 0; round < 40; ++round) {
+    const double scale = std::pow(10, uniform(-3, 3)), voxel = std::max(1e-6, scale * std::pow(10, uniform(-2, 0.5)));
+    const Vector3d place = round % 3 == 0 ? Vector3d(uniform(-1e5, 1e5), uniform(-1e5, 1e5), 0) : Vector3d(0, 0, 0);
+    std::vector<Vector3d> points;
+    std::vector<double> radii;
+    const int n = round % 20 == 0 ? 20000 : 300;  // many: over threads
+    for (int i = 0; i < n; ++i) {
+      points.push_back(place + scale * Vector3d(uniform(-1, 1), uniform(-1, 1), round % 2 ? 0 : uniform(-1, 1)));
+      if (i % 20 == 19) points.back() = points[static_cast<std::size_t>(i - 7)];
+      radii.push_back(round % 4 == 1 ? 1e-12 : scale * std::pow(10, uniform(-4, -1)));
+    }
+    if (round % 2) radii.resize(1);
+    const PointCloud cloud(points, radii);
+    const auto thinned = cloud.thinned(voxel);
+    ASSERT_LE(thinned->points().size(), points.size());
+    const auto cellOf = [&](const Vector3d& x) {
+      std::array<double, 3> cell;
+      for (int k = 0; k < 3; ++k) cell[static_cast<std::size_t>(k)] = std::floor(x[k] * (1 / voxel));
+      return cell;
+    };
+    std::map<std::array<double, 3>, std::size_t> voxels;  // by their first points
+    std::vector<std::size_t> count, of;
+    for (const Vector3d& x : points) {
+      const auto [at, is_new] = voxels.emplace(cellOf(x), voxels.size());
+      if (is_new) count.push_back(0);
+      ++count[at->second];
+      of.push_back(at->second);
+    }
+    ASSERT_EQ(thinned->points().size(), voxels.size()) << round;
+    std::vector<double> reach(voxels.size(), 0);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::size_t v = of[i];
+      ASSERT_TRUE(liesIn(points[i], cloud.radius(i), thinned->points()[v], thinned->radius(v)))
+          << "round " << round << ", point " << i;
+      ASSERT_LE(thinned->radius(v), *std::max_element(radii.begin(), radii.end()) + 0.8661 * voxel + 1e-9);
+      if (count[v] == 1) {
+        ASSERT_EQ(thinned->points()[v], points[i]);
+        ASSERT_EQ(thinned->radius(v), cloud.radius(i));
+      }
+      reach[v] = std::max(reach[v], (points[i] - thinned->points()[v]).norm() + cloud.radius(i));
+    }
+    for (std::size_t v = 0; v < reach.size(); ++v) tight += thinned->radius(v) <= reach[v] * (1 + 1e-13) + 1e-140;
+    balls += points.size();
+    thinned_balls += voxels.size();
+  }
+  EXPECT_EQ(tight, thinned_balls);      // no larger than its points need
+  EXPECT_LT(2 * thinned_balls, balls);  // the test is telling: most cubes have several
+  EXPECT_GT(20 * thinned_balls, balls);
+}
+
+/// A motion that is free amid a thinned cloud is free amid the cloud: the queries' own view.
+TEST(PointCloud, FreeOfTheThinnedIsFree) {
+  const auto tree = armTree();
+  int free = 0, contacts = 0;
+  for (int scene = 0; scene < 12; ++scene) {
+    const Cloud cloud = randomCloud(400, 1.3, scene % 2 == 0);
+    const auto all = std::make_shared<PointCloud>(cloud.points, cloud.radii);
+    ArticulatedCollisionManager whole(tree), fewer(tree);
+    for (ArticulatedCollisionManager* manager : {&whole, &fewer}) {
+      bindBoxes(*manager);
+      manager->registerObject(object(manager == &whole ? all : all->thinned(0.15)), "cloud");
+      manager->setup();
+    }
+    for (int i = 0; i < 100; ++i) {
+      const Vector3d q0(uniform(-3, 3), uniform(-1.5, 1.5), uniform(0, 0.2));
+      const Vector3d q1 = q0 + 0.1 * Vector3d(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+      const bool free_of_fewer = fewer.isFree(q0, q1), free_of_all = whole.isFree(q0, q1);
+      if (free_of_fewer) EXPECT_TRUE(free_of_all);
+      free += free_of_fewer;
+      contacts += !free_of_all;
+    }
+  }
+  EXPECT_GT(free, 10);
+  EXPECT_GT(contacts, 10);
+}
+
+/// Rows of any size and alignment; what is not finite is left out and counted.
+TEST(ReadFrame, TakesRowsAsTheyLie) {
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  const std::vector<std::array<double, 3>> values = {{1, 2, 3},    {nan, 0, 0},  {0.5, -0.25, 7}, {0, inf, 0},
+                                                     {0, 0, -inf}, {-1, -2, -3}, {nan, -inf, 1}};
+  const FrameLayout layouts[] = {{12, 0, 4, 8, false}, {32, 16, 20, 24, false}, {13, 9, 1, 5, false},
+                                 {24, 0, 8, 16, true}, {29, 21, 1, 10, true},   {24, 16, 8, 0, true}};
+  for (const FrameLayout& layout : layouts) {
+    std::vector<char> bytes(1 + values.size() * layout.stride, '\x55');
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const std::size_t places[] = {layout.x, layout.y, layout.z};
+      for (std::size_t k = 0; k < 3; ++k) {
+        char* to = &bytes[1 + i * layout.stride + places[k]];
+        const float single = static_cast<float>(values[i][k]);
+        layout.is_double ? std::memcpy(to, &values[i][k], 8) : std::memcpy(to, &single, 4);
+      }
+    }
+    const FramePoints frame = readFrame(bytes.data() + 1, values.size(), layout);
+    ASSERT_EQ(frame.points.size(), 3u);
+    EXPECT_EQ(frame.points[0], Vector3d(1, 2, 3));
+    EXPECT_EQ(frame.points[1], Vector3d(0.5, -0.25, 7));
+    EXPECT_EQ(frame.points[2], Vector3d(-1, -2, -3));
+    EXPECT_EQ(frame.rows, (std::vector<std::uint32_t>{0, 2, 5}));
+    EXPECT_EQ(frame.missing, 4u);
+    EXPECT_EQ(frame.too_near, 2u);
+    EXPECT_TRUE(readFrame(bytes.data() + 1, 1, layout).rows.empty());
+  }
+  EXPECT_TRUE(readFrame(nullptr, 0).points.empty());
+  for (const FrameLayout& wrong : {FrameLayout{11, 0, 4, 8, false}, FrameLayout{12, 0, 4, 8, true},
+                                   FrameLayout{12, 0, 4, std::size_t(-2), false}}) {
+    EXPECT_THROW((void)readFrame(nullptr, 0, wrong), std::invalid_argument);
+  }
+}
+
 TEST(PointCloud, WhatIsNoCloudIsRefused) {
   const auto contains = [](const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos ? testing::AssertionSuccess() : testing::AssertionFailure() << text;
@@ -263,6 +436,9 @@ TEST(PointCloud, WhatIsNoCloudIsRefused) {
   EXPECT_TRUE(contains(messageOf([&] { PointCloud(two, {0.1, 0.1, 0.1}); }), "2 points and 3 radii"));
   EXPECT_TRUE(contains(messageOf([&] { PointCloud({{0, 0, 0}, {0, std::nan(""), 0}}, 0.1); }), "point 1"));
   EXPECT_TRUE(contains(messageOf([&] { PointCloud({{0, 0, 2e9}}, 0.1); }), "point 0"));
+  for (const double side : {0.0, -1.0, 1e-7, 2e9, std::nan("")}) {
+    EXPECT_TRUE(contains(messageOf([&] { (void)PointCloud(two, 0.1).thinned(side); }), "voxel")) << side;
+  }
 }
 
 }  // namespace

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The tree over many pieces without vertices, by the order of their centres along a curve.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "geometry/curve_order.h"
+#include "geometry/node_boxes.h"
+#include "threads/parallel.h"
+
+namespace fcl_artic {
+
+/// From one piece's number to the next one's.
+constexpr std::size_t kPieceStride = sizeof(engine::Piece) / sizeof(double);
+static_assert(sizeof(engine::Piece) % sizeof(double) == 0, "pieces lie a whole number of doubles apart");
+
+/// The tree over pieces without vertices, in the order of a curve (CurveOrder), over threads. Nodes lie as Builder lays
+/// them: those below a node side by side. So their places are known before they are made, and any thread may make them.
+/// @tparam Measure  the box of a piece, called as measure(piece), also by several threads; it may write to the piece.
+template <class Measure>
+class CurveBuilder {
+ public:
+  /// @param centers  of the pieces, by their numbers.
+  /// @param pieces  where they are, or where put() puts them.
+  /// @param nodes  2 a piece.
+  CurveBuilder(PointsAt centers, std::size_t size, int threads, engine::Piece* pieces, engine::Node* nodes,
+               Measure measure)
+      : measure_(measure),
+        order_(centers, size, threads),
+        threads_(size < kManyPieces ? 1 : threads),
+        pieces_(pieces),
+        nodes_(nodes) {
+    // Parts of a size that stays in a processor's memory: pieces that are put there are read again at once.
+    divide({0, order_.all()}, std::max(kFewPieces, size / 256));
+  }
+  /// The tree over pieces that are where they belong.
+  void build() {
+    buildParts([](const CurveOrder::Range&) {});
+  }
+  /// Puts pieces in the order of the curve, so that those near each other lie side by side, and builds the tree.
+  /// @param pieceOf  called as pieceOf(number), once for each piece, by several threads.
+  template <class PieceOf>
+  void put(const PieceOf& pieceOf) {
+    order_.renumber({pieces_[0].center, kPieceStride});
+    buildParts([&](const CurveOrder::Range& range) {
+      for (std::size_t i = range.begin; i < range.end; ++i) pieces_[i] = pieceOf(order_.takeNumber(i));
+    });
+  }
+
+ private:
+  static constexpr std::size_t kFewPieces = 1 << 11, kManyPieces = 1 << 14;
+  struct Below {
+    std::size_t node;
+    CurveOrder::Range range;
+    std::size_t child = 2;  ///< its left one; those of the nodes below follow
+  };
+  /// The two children, the left one first. A node over n pieces takes 2 (n - 1) nodes below it.
+  std::pair<Below, Below> split(Below& at) {
+    const std::size_t middle = order_.split(at.range);
+    const CurveOrder::Range left{at.range.begin, middle, at.range.cells}, right{middle, at.range.end, at.range.cells};
+    return {{at.child, left, at.child + 2}, {at.child + 1, right, at.child + 2 * left.size()}};
+  }
+  template <class Prepare>
+  void buildParts(const Prepare& prepare) {
+    parallelFor(parts_.size(), threads_, [&](std::size_t i) {
+      prepare(parts_[i].range);
+      build(parts_[i]);
+    });
+    for (std::size_t i = above_.size(); i-- > 0;) enclose(above_[i]);
+    nodes_[1] = nodes_[0];
+  }
+  void divide(Below at, std::size_t part) {
+    if (at.range.size() <= part) return parts_.push_back(at);
+    above_.push_back(at);
+    const auto [left, right] = split(at);
+    divide(left, part);
+    divide(right, part);
+  }
+  void build(Below at) {
+    if (at.range.size() == 1) {
+      const std::uint32_t piece = order_.number(at.range.begin);
+      nodes_[at.node] = makeLeaf(measure_(pieces_[piece]), static_cast<std::int32_t>(piece));
+      return;
+    }
+    const auto [left, right] = split(at);
+    build(left);
+    build(right);
+    enclose(at);
+  }
+  /// Makes a node of its children.
+  void enclose(const Below& at) {
+    engine::Node& node = nodes_[at.node];
+    fcl_artic::enclose(nodes_[at.child], nodes_[at.child + 1], node);
+    node.child = static_cast<std::int32_t>(at.child);
+  }
+  const Measure measure_;
+  CurveOrder order_;
+  const int threads_;
+  engine::Piece* const pieces_;
+  engine::Node* const nodes_;
+  std::vector<Below> parts_;
+  std::vector<Below> above_;  ///< nodes above them, each before its children
+};
+
+}  // namespace fcl_artic
