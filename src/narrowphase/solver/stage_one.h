@@ -182,8 +182,8 @@ inline unsigned StageOne::lssMayTouch(int mover, int obstacle_number, unsigned m
   const PairId pair = problem().scenePair(mover, obstacle_number);
   const engine::StillBounds& obstacle = problem().still_bounds[obstacle_number];
   NearestToBox nearest;
-  mask &=
-      ~certainlyApart(mover_lss_[mover], obstacle.box, WorldSeen{obstacle.inverse}, query().margins.of(pair), nearest);
+  const WorldSeen world = {obstacle.inverse};
+  mask &= ~certainlyApart(mover_lss_[mover], obstacle.box, world, query().margins.of(pair), nearest);
   direction = nearest.direction;
   if (mask && obstacle.solid) expectContact(pair, mover, obstacle, mask, nearest);
   return mask;
