@@ -46,6 +46,7 @@ constexpr struct {
     {"JointTrajectory", "begin_time", "Time at which it begins."},
     {"JointTrajectory", "end_time", "Time at which it ends."},
     {"JointTrajectory", "times", "Times (N + 1,) at which its N pieces begin, and the end."},
+    {"Geometry", "missing", "Rows without a point, not finite, that points() left out."},
     {"Geometry", "kind", "What it is: \"box\", \"mesh\", \"points\" ..."},
     {"Geometry", "solid", "Whether it is a solid: what lies within it touches it."},
     {"Geometry", "vertices", "Vertices (n, 3) of a mesh or of a convex polyhedron; others have none."},

@@ -20,6 +20,7 @@
 
 #include "fcl_artic/point_cloud.h"
 #include "fcl_artic/solid_mesh.h"
+#include "gil.h"
 #include "hull.h"
 #include "options.h"
 #include "text/counted.h"
@@ -161,23 +162,71 @@ Geometry octree(py::handle points, py::handle resolution) {
   return makeShape<fcl::OcTreed>(std::shared_ptr<const octomap::OcTree>(tree));
 }
 
-Geometry points(py::handle points, py::handle radius) {
-  const Matrix matrix = matrixOf(points, "points", 3);
-  const Rows rows = matrix.rows();
-  std::vector<Vector3d> places(static_cast<std::size_t>(rows.rows()));
-  for (Eigen::Index i = 0; i < rows.rows(); ++i) places[static_cast<std::size_t>(i)] = rows.row(i).transpose();
+/// The layout of an array that can be read where it lies: rows without gaps, x, y and z of one type, which is the
+/// machine's own float32 or float64.
+bool layoutOf(const py::array& rows, FrameLayout& layout) {
+  if (!(rows.flags() & py::array::c_style)) return false;
+  const auto isPlain = [&](const py::dtype& type) {
+    const bool is_double = type.equal(py::dtype::of<double>());
+    layout.is_double = is_double;
+    return is_double || type.equal(py::dtype::of<float>());
+  };
+  layout.stride = static_cast<std::size_t>(rows.itemsize()) * (rows.ndim() == 2 ? 3 : 1);
+  if (rows.ndim() == 2) {
+    layout.x = 0;
+    layout.y = static_cast<std::size_t>(rows.itemsize());
+    layout.z = 2 * layout.y;
+    return isPlain(rows.dtype());
+  }
+  const py::dict fields = rows.dtype().attr("fields");
+  std::size_t* const places[] = {&layout.x, &layout.y, &layout.z};
+  py::object first;
+  for (int k = 0; k < 3; ++k) {
+    const py::tuple field = fields[py::str(std::string(1, "xyz"[k]))];
+    if (k > 0 && !first.equal(field[0])) return false;
+    first = field[0];
+    *places[k] = py::cast<std::size_t>(field[1]);
+  }
+  return isPlain(py::dtype::from_args(first));
+}
+
+Geometry points(py::handle points, py::handle radius, py::handle voxel) {
+  FramePoints frame = pointArrayOf(points, "points").frame;
   std::vector<double> radii;
   if (PySequence_Check(radius.ptr())) {
     const Eigen::VectorXd each = vectorOf(radius, "radius");
     radii.assign(each.data(), each.data() + each.size());
-    if (radii.size() != places.size()) {
-      valueError("there are " + text::counted(places.size(), "point") + " and " +
+    if (radii.size() != frame.points.size() + frame.missing) {
+      valueError("there are " + text::counted(frame.points.size() + frame.missing, "point") + " and " +
                  text::counted(radii.size(), "radius", "radii"));
+    }
+    if (frame.missing > 0) {
+      for (std::size_t i = 0; i < frame.rows.size(); ++i) radii[i] = radii[frame.rows[i]];
+      radii.resize(frame.rows.size());
     }
   } else {
     radii.push_back(lengthOf(radius, "radius"));
   }
-  return makeShape<PointCloud>(std::move(places), std::move(radii));
+  const double side = voxel.is_none() ? 0 : lengthOf(voxel, "voxel");
+  if (frame.missing > 0) {
+    if (frame.points.empty()) valueError("points has no row that is finite");
+    // (The same text each time: Python shows it once for each place that it comes from.)
+    std::vector<std::string> notes{
+        "points() leaves out rows that are not finite, as of rays without an echo; Geometry.missing counts them"};
+    if (frame.too_near > 0) {
+      notes.push_back(
+          "some of these rows are -inf, by which some cameras mean that something is too near to be measured: it is "
+          "not "
+          "in the scene");
+    }
+    warn(notes);
+  }
+  Geometry cloud;
+  cloud.missing = frame.missing;
+  const GilReleased released;
+  const auto all = std::make_shared<PointCloud>(std::move(frame.points), std::move(radii));
+  cloud.shape = side > 0 ? all->thinned(side) : all;
+  return cloud;
 }
 
 /// OctoMap's readData() reads a node as its log-odds, then a bit for each of its eight children, then the children.
@@ -257,7 +306,7 @@ py::tuple geometryState(const Geometry& geometry) {
   if (const auto* cloud = dynamic_cast<const PointCloud*>(&g)) {
     const std::vector<double>& radii = cloud->radii();
     return py::make_tuple("points", arrayOfRows(rowsOf(cloud->points().data(), cloud->points().size())),
-                          py::array_t<double>(static_cast<py::ssize_t>(radii.size()), radii.data()));
+                          py::array_t<double>(static_cast<py::ssize_t>(radii.size()), radii.data()), geometry.missing);
   }
   const auto* model = asMesh(g);
   if (!model) valueError("this kind of geometry has no description");
@@ -277,7 +326,12 @@ Geometry geometryOfState(const py::tuple& s) {
   if (kind == "triangle") return triangle(s[1], s[2], s[3]);
   if (kind == "convex") return convex(s[1], py::none());
   if (kind == "mesh") return mesh(s[1], s[2], py::cast<bool>(s[3]));
-  if (kind == "points") return points(s[1], py::len(s[2]) == 1 ? py::object(s[2][py::int_(0)]) : py::object(s[2]));
+  if (kind == "points") {
+    const py::object radii = py::len(s[2]) == 1 ? py::object(s[2][py::int_(0)]) : py::object(s[2]);
+    Geometry cloud = points(s[1], radii, py::none());
+    if (s.size() > 3) cloud.missing = py::cast<std::size_t>(s[3]);
+    return cloud;
+  }
   if (kind == "octree") return octreeOfState(py::cast<double>(s[1]), py::cast<std::string>(s[2]));
   // The constructor is not used: it would divide by the normal's length, which is not 1 to the last bit.
   if (kind == "halfspace") {
@@ -293,6 +347,41 @@ Geometry geometryOfState(const py::tuple& s) {
     return g;
   }
   valueError("there is no kind of geometry '" + kind + "'");
+}
+
+PointArray pointArrayOf(py::handle value, const char* what) {
+  const py::module_ numpy = py::module_::import("numpy");
+  const bool is_array =
+      py::isinstance<py::array>(value) && !py::isinstance(value, numpy.attr("ma").attr("MaskedArray"));
+  const py::object names = is_array ? py::object(value.attr("dtype").attr("names")) : py::none();
+  PointArray points;
+  py::array numbers;  // as readFrame() takes them
+  FrameLayout layout;
+  if (!names.is_none()) {
+    for (const char* name : {"x", "y", "z"}) {
+      if (!py::cast<bool>(names.attr("__contains__")(name))) {
+        valueError(std::string(what) + " has no field '" + name + "'; it has " + std::string(py::str(names)));
+      }
+    }
+    points.rows = numbers = numpy.attr("ascontiguousarray")(value).attr("reshape")(-1);
+    if (!layoutOf(numbers, layout)) {  // other types or orders of bytes: NumPy converts
+      const auto column = [&](const char* name) { return doubles(points.rows[py::str(name)], what); };
+      numbers = numpy.attr("column_stack")(py::make_tuple(column("x"), column("y"), column("z")));
+      layout = {24, 0, 8, 16, true};
+    }
+  } else {
+    if (is_array) numbers = py::reinterpret_borrow<py::array>(value);
+    const bool as_it_is = is_array && numbers.ndim() == 2 && numbers.shape(1) == 3 && layoutOf(numbers, layout);
+    if (!as_it_is) {
+      numbers = matrixOf(value, what, 3).array;
+      layout = {24, 0, 8, 16, true};
+    }
+    points.rows = numbers;
+  }
+  const auto count = static_cast<std::size_t>(numbers.shape(0));
+  const GilReleased released;
+  points.frame = readFrame(numbers.data(), count, layout);
+  return points;
 }
 
 Geometry geometryOf(py::handle value, const char* what) {
@@ -328,6 +417,7 @@ void bindGeometry(py::module_& module) {
                                if (!model) throw py::attribute_error("only a mesh has faces");
                                return arrayOfFaces(model->tri_indices, static_cast<std::size_t>(model->num_tris));
                              })
+      .def_property_readonly("missing", [](const Geometry& g) { return g.missing; })
       .def(
           "as_solid", [](const Geometry& g) { return Geometry{makeSolid(*g.shape)}; },
           "A solid mesh of the same triangles, so that what lies within touches it. They must be closed.")
@@ -382,8 +472,12 @@ void bindGeometry(py::module_& module) {
       py::arg("vertices"), py::arg("faces") = py::none(), py::arg("solid") = false);
   module.def("octree", &octree, "The cells, cubes of this edge length, that hold one of the points (N, 3) or more.",
              py::arg("points"), py::arg("resolution"));
-  module.def("points", &points, "Points (N, 3), each a ball of this radius, or of one radius each (N,).",
-             py::arg("points"), py::arg("radius"));
+  module.def(
+      "points", &points,
+      "Points, each a ball of this radius, or of one radius each (N,): numbers (N, 3), or an array with fields x,\n"
+      "y, z, as a PointCloud2 has them. Rows that are not finite are left out (Geometry.missing). With `voxel`, one\n"
+      "ball for each cube of this side that has points, which holds all of their balls.",
+      py::arg("points"), py::arg("radius"), py::kw_only(), py::arg("voxel") = py::none());
 }
 
 }  // namespace fcl_artic::python

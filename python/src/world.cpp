@@ -338,6 +338,26 @@ CertifiedResult collide(const World& world, py::handle q, const py::kwargs& opti
   return result;
 }
 
+py::tuple removeSelf(const World& world, py::handle points, py::handle q, py::handle padding, py::handle pose) {
+  const PointArray seen = pointArrayOf(points, "points");
+  const Eigen::VectorXd at = vectorOf(q, "q");
+  const double within = numberOf(padding, "padding");
+  const Eigen::Isometry3d frame = poseOf(pose, "pose");
+  const std::vector<std::uint8_t> marks = world.manager().ask([&](const ArticulatedCollisionManager& manager) {
+    return manager.pointsOnSelf(seen.frame.points, at, within, frame);
+  });
+  py::array_t<bool> stay(seen.rows.shape(0));
+  bool* const out = stay.mutable_data();
+  std::fill_n(out, stay.size(), true);
+  std::size_t removed = 0;
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    if (!marks[i]) continue;
+    out[seen.frame.rows.empty() ? i : seen.frame.rows[i]] = false;
+    ++removed;
+  }
+  return py::make_tuple(seen.rows[stay], removed);
+}
+
 void dump(const World& world, py::handle path, py::handle q0, py::handle q1, const py::kwargs& options) {
   const auto file = py::cast<std::string>(py::module_::import("os").attr("fspath")(path));
   const Request request = readRequest(options);
@@ -564,6 +584,12 @@ void bindQueries(py::class_<World>& world) {
           "ignore_initial_contact=True, pairs that touch at its begin, or are within their margin (ignored_margin, or\n"
           "their own), are left out.",
           py::arg("q0"), py::arg("q1") = py::none())
+      .def("remove_self", &removeSelf,
+           "Drops points, as a sensor has seen them, that lie in or within `padding` of what links carry at q: the "
+           "other\n"
+           "rows, in their order, and how many were dropped. Rows that are not finite stay. `pose` is that of the\n"
+           "points' frame. A mesh is its surface, unless it is a solid.",
+           py::arg("points"), py::arg("q"), py::arg("padding") = 0.0, py::kw_only(), py::arg("pose") = py::none())
       .def(
           "checked_link_pairs",
           [](const World& w) { return w.manager().ask([](const auto& m) { return m.checkedLinkPairs(); }); },

@@ -83,6 +83,9 @@ REACHABLE = {
     "SolidMesh": "mesh",  # solid=True
     "PointCloud": "points",
     "loadPointCloud": "load_points",
+    "FrameLayout": "points",  # an array's own
+    "FramePoints": "Geometry.missing",
+    "readFrame": "points",
     "SolidMark": "Geometry.solid",
     "makeSolid": "Geometry.as_solid",
     # visibility.h, visibility/offscreen.h
@@ -173,6 +176,7 @@ MEMBERS = {
             "empty": "obstacles",
             "continuousCollide": "check",
             "writeQuery": "dump",
+            "pointsOnSelf": "remove_self",
         },
     ),
     "KinematicTree": (
