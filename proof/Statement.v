@@ -58,6 +58,9 @@ Inductive geometry :=
   | Box (sizes : numbers3)
   | Sphere (radius : number)
   | Capsule (radius length : number)
+  | Ellipsoid (semiaxes : numbers3)
+  | Cylinder (radius length : number)
+  | Cone (radius length : number)
   | Hull (points : list numbers3).
 
 Inductive role := link | carried | obstacle.
@@ -144,6 +147,11 @@ Definition inside (g : geometry) (x : vec) : Prop :=
   | Box sizes => in_box (scale (/ 2) (point sizes)) x
   | Sphere r => norm x <= real r
   | Capsule r l => exists z, - real l / 2 <= z <= real l / 2 /\ norm (sub x (Vec 0 0 z)) <= real r
+  | Ellipsoid a => exists u, norm u <= 1 /\
+      x = Vec (real (n1 a) * vx u) (real (n2 a) * vy u) (real (n3 a) * vz u)
+  | Cylinder r l => norm (Vec (vx x) (vy x) 0) <= real r /\ - real l / 2 <= vz x <= real l / 2
+  | Cone r l => exists h, 0 <= h <= 1 /\                  (* h: part of the way from the base to the apex *)
+      norm (Vec (vx x) (vy x) 0) <= (1 - h) * real r /\ vz x = h * real l - real l / 2
   | Hull points => in_hull (map point points) x
   end.
 

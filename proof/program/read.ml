@@ -207,7 +207,16 @@ let geometry l =
       let length = not_negative l in
       last l;
       Capsule (r, length)
-  | ("ellipsoid" | "cylinder" | "cone" | "halfspace" | "plane") as kind -> scope l ("geometry " ^ kind)
+  | "ellipsoid" ->
+      let a = three l not_negative in
+      last l;
+      Ellipsoid a
+  | ("cylinder" | "cone") as kind ->
+      let r = not_negative l in
+      let length = not_negative l in
+      last l;
+      if kind = "cylinder" then Cylinder (r, length) else Cone (r, length)
+  | ("halfspace" | "plane") as kind -> scope l ("geometry " ^ kind)
   | kind -> fail l ("there is no geometry '" ^ kind ^ "'")
 
 let world text =
