@@ -481,6 +481,11 @@ Proof.
     (eapply holds_eq; [|apply holds_opp; eassumption]; ring).
 Qed.
 
+(** Every frame but the world stands in one that is listed before it, and every body in a frame. *)
+Definition well_formed (w : world) :=
+  (forall i f, nth_error (frames w) i = Some f -> (parent f <= i)%nat) /\
+  (forall b, In b (bodies w) -> (body_frame b <= length (frames w))%nat).
+
 Section Sound.
 Variable w : world.
 Hypothesis WF : well_formed w.

@@ -191,10 +191,9 @@ Definition margin (w : world) (m : motion) (a b : body) : R :=
 
 (** ** The claim *)
 
-(** Every frame but the world stands in one that is listed before it, and every body in a frame. *)
-Definition well_formed (w : world) :=
-  (forall i f, nth_error (frames w) i = Some f -> (parent f <= i)%nat) /\
-  (forall b, In b (bodies w) -> (body_frame b <= length (frames w))%nat).
+(** The claim is about something: whatever the values of the variables, frames and bodies can stand as the world says. *)
+Definition meaningful (w : world) :=
+  (forall q, exists P, frames_at w q P) /\ (forall b, In b (bodies w) -> exists B, pose_map (body_place b) B).
 
 (** At values q of the variables, whatever the rotations and axes mean, the points of a and b keep their distance. *)
 Definition apart (w : world) (m : motion) (q : nat -> R) (a b : body) : Prop :=
@@ -206,7 +205,7 @@ Definition ends (m : motion) (k : nat) : R :=
   if Nat.eqb (S k) (length (pieces m)) then real (until m) else 1.
 
 Definition claim (w : world) (m : motion) : Prop :=
-  well_formed w /\
+  meaningful w /\
   forall k p, nth_error (pieces m) k = Some p ->
   forall i j a b, (i < j)%nat -> nth_error (bodies w) i = Some a -> nth_error (bodies w) j = Some b ->
   checked w m a b = true ->

@@ -4,7 +4,7 @@
     As verify/proof.cpp: a node is about a task, that is pieces of a body A, a list of partners and an interval of time;
     TIME, PARTNERS, OWN and OTHER cut their task in two parts that cover it. *)
 From Coq Require Import Reals ZArith Lia Lra String Bool List.
-From FclArtic Require Import Statement Numbers Trig Frames Enclose Leaf.
+From FclArtic Require Import Statement Numbers Trig Frames Enclose Meaning Leaf.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -109,8 +109,11 @@ Fixpoint parents_ok (i : nat) (fs : list frame) : bool :=
 Definition is_well_formed (w : world) : bool :=
   parents_ok 0 (frames w) && forallb (fun b => Nat.leb (body_frame b) (length (frames w))) (bodies w).
 
+Definition is_meaningful (w : world) : bool :=
+  forallb frame_means (frames w) && forallb (fun b => has_rotation (body_place b)) (bodies w).
+
 Definition accepts (w : world) (m : motion) (nodes : list node) : bool :=
-  is_well_formed w &&
+  is_well_formed w && is_meaningful w &&
   match check_pieces w m (map sframe_of (frames w)) (map prepare (bodies w)) (pieces m) nodes with
   | Some [] => true
   | _ => false
@@ -233,12 +236,16 @@ Qed.
 
 Theorem accepts_sound w m nodes : accepts w m nodes = true -> claim w m.
 Proof.
-  unfold accepts. rewrite andb_true_iff. intros [HW H].
+  unfold accepts. rewrite !andb_true_iff. intros [[HW HM] H].
   assert (WF : well_formed w).
   { apply andb_true_iff in HW. destruct HW as [H1 H2]. split.
     - intros i f N. exact (parents_ok_spec _ 0 H1 i f N).
     - intros b I. rewrite forallb_forall in H2. apply Nat.leb_le, H2, I. }
-  split; [exact WF|]. intros k p Np i j a b Hij Na Nb C t Ht.
+  split.
+  { apply andb_true_iff in HM. destruct HM as [M1 M2]. split.
+    - intros q. apply frames_exist; [apply WF | exact M1].
+    - intros b I. rewrite forallb_forall in M2. apply has_rotation_ok, M2, I. }
+  intros k p Np i j a b Hij Na Nb C t Ht.
   destruct (check_pieces w m (map sframe_of (frames w)) (map prepare (bodies w)) (pieces m) nodes) as [left|] eqn:K;
     [|discriminate]. clear H.
   destruct (check_pieces_ok w m _ _ _ K k p Np) as (nodes' & left' & B).
