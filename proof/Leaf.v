@@ -1,0 +1,572 @@
+(* SPDX-License-Identifier: BSD-3-Clause *)
+(** * Geometry by its corners, and the leaf SEP: a direction that keeps two bodies apart *)
+From Coq Require Import Reals ZArith Lia Lra Bool List.
+From FclArtic Require Import Statement Numbers Trig Frames Enclose.
+Import ListNotations.
+Open Scope R_scope.
+
+Lemma norm_nonneg v : 0 <= norm v.
+Proof. apply sqrt_pos. Qed.
+Lemma dot_nonneg v : 0 <= dot v v.
+Proof. unfold dot. nra. Qed.
+
+Lemma cauchy v x : dot v x <= norm v * norm x.
+Proof.
+  unfold norm. rewrite <- sqrt_mult by apply dot_nonneg.
+  eapply Rle_trans; [apply Rle_abs|]. rewrite <- sqrt_Rsqr_abs. apply sqrt_le_1_alt.
+  assert (0 <= dot (cross v x) (cross v x)) by apply dot_nonneg.
+  assert (E : dot v v * dot x x - Rsqr (dot v x) = dot (cross v x) (cross v x))
+    by (unfold dot, cross, Rsqr; cbn; ring). lra.
+Qed.
+
+(** ** Outlines
+
+    A convex piece as its corners and a radius. A corner is an ellipsoid around a point, with the semi-axes along those
+    of the geometry: a disc, or most often the point itself. Its numbers are constant models. The outline covers a point
+    if along every direction the point is no farther than some corner and the radius. *)
+Record round := Round { centre : tvec; semiaxes : option tvec }.
+Record outline := Outline { corners : list round; radius : Z }.
+
+Definition times (a v : vec) : vec := Vec (vx a * vx v) (vy a * vy v) (vz a * vz v).
+
+Definition holds_round (c : round) (s : R) (p a : vec) : Prop :=
+  holdsv (centre c) s p /\ match semiaxes c with Some m => holdsv m s a | None => a = Vec 0 0 0 end.
+
+Definition covers (s : R) (o : outline) (x : vec) : Prop :=
+  forall v, exists c p a, In c (corners o) /\ holds_round c s p a /\
+    dot v x <= dot v p + norm (times a v) + V (radius o) * norm v.
+
+Definition at_point (p : tvec) : round := Round p None.
+
+Lemma at_point_holds m s p : holdsv m s p -> holds_round (at_point m) s p (Vec 0 0 0).
+Proof. intros H. split; [exact H | reflexivity]. Qed.
+
+Definition tsub (a b : tvec) := Tvec (tm_sub (tx a) (tx b)) (tm_sub (ty a) (ty b)) (tm_sub (tz a) (tz b)).
+Definition box_corners (c h : tvec) : list tvec :=
+  flat_map (fun x => flat_map (fun y => map (fun z => Tvec x y z) [tm_add (tz c) (tz h); tm_sub (tz c) (tz h)])
+                              [tm_add (ty c) (ty h); tm_sub (ty c) (ty h)])
+           [tm_add (tx c) (tx h); tm_sub (tx c) (tx h)].
+
+Definition half (x : number) : number := Number (mantissa x) (exponent x - 1).
+Definition half3 (p : numbers3) : numbers3 := Numbers3 (half (n1 p)) (half (n2 p)) (half (n3 p)).
+Definition origin_tm : tvec := Tvec tm_zero tm_zero tm_zero.
+
+Definition of_points (ps : list tvec) : outline := Outline (map at_point ps) 0.
+
+(** The ends of the axis of a shape of length l along z. *)
+Definition upper_end (l : number) : tvec := Tvec tm_zero tm_zero (tm_number (half l)).
+Definition lower_end (l : number) : tvec := Tvec tm_zero tm_zero (tm_opp (tm_number (half l))).
+Definition disc (p : tvec) (r : number) : round := Round p (Some (Tvec (tm_number r) (tm_number r) tm_zero)).
+
+Definition outlines (g : geometry) : list outline :=
+  match g with
+  | MeshSurface ts => map (fun t => let '(a, b, c) := t in of_points [tm_point a; tm_point b; tm_point c]) ts
+  | Boxes cells => map (fun c => of_points (box_corners (tm_point (fst c)) (tm_point (snd c)))) cells
+  | Box sizes => [of_points (box_corners origin_tm (tm_point (half3 sizes)))]
+  | Sphere r => [Outline [at_point origin_tm] (number_up r)]
+  | Capsule r l => [Outline [at_point (upper_end l); at_point (lower_end l)] (number_up r)]
+  | Ellipsoid a => [Outline [Round origin_tm (Some (tm_point a))] 0]
+  | Cylinder r l => [Outline [disc (upper_end l) r; disc (lower_end l) r] 0]
+  | Cone r l => [Outline [at_point (upper_end l); disc (lower_end l) r] 0]
+  | Hull ps => [of_points (map tm_point ps)]
+  end.
+
+Lemma real_half x : real (half x) = real x / 2.
+Proof.
+  unfold half, real; cbn [mantissa exponent]. unfold Z.sub. rewrite powerRZ_add, (power_opp 1), powerRZ_1 by lra. field.
+Qed.
+
+Lemma hull_farthest ps x v : in_hull ps x -> exists p, In p ps /\ dot v x <= dot v p.
+Proof.
+  induction 1 as [p Hp | x y l _ (p & Pp & Lp) _ (q & Pq & Lq) Hl].
+  - exists p. split; [exact Hp | lra].
+  - assert (E : dot v (add (scale l x) (scale (1 - l) y)) = l * dot v x + (1 - l) * dot v y)
+      by (unfold dot, add, scale; cbn; ring).
+    rewrite E. destruct (Rle_dec (dot v p) (dot v q)) as [L|G]; [exists q | exists p]; split; try assumption; nra.
+Qed.
+
+Lemma norm_nil v : norm (times (Vec 0 0 0) v) = 0.
+Proof.
+  unfold norm, times, dot; cbn [vx vy vz]. replace (_ + _ + _) with 0 by ring. apply sqrt_0.
+Qed.
+
+(** Pieces without a radius, of which some point is the farthest. *)
+Lemma points_cover s ms x :
+  (forall v, exists m p, In m ms /\ holdsv m s p /\ dot v x <= dot v p) -> covers s (of_points ms) x.
+Proof.
+  intros H v. destruct (H v) as (m & p & I & Hm & L). exists (at_point m), p, (Vec 0 0 0). cbn [corners radius of_points].
+  split; [apply in_map; exact I|]. split; [apply at_point_holds; exact Hm|]. rewrite norm_nil, V_0. lra.
+Qed.
+
+Lemma hull_covers s ms ps x : Forall2 (fun m p => holdsv m s p) ms ps -> in_hull ps x -> covers s (of_points ms) x.
+Proof.
+  intros H Hx. apply points_cover. intros v. destruct (hull_farthest ps x v Hx) as (p & Hp & L). clear Hx.
+  induction H as [|m q ms ps Hm H IH]; [destruct Hp|]. destruct Hp as [->|Hp].
+  - exists m, p. split; [left; reflexivity|]. split; [exact Hm | exact L].
+  - destruct (IH Hp) as (c & r & Ic & Hc & Lc). exists c, r. split; [right; exact Ic|]. split; assumption.
+Qed.
+
+(** The farther end of an interval along one axis. *)
+Lemma farther_end s v x c h cm hm : holds cm s c -> holds hm s h -> Rabs (x - c) <= h ->
+  exists m p, In m [tm_add cm hm; tm_sub cm hm] /\ holds m s p /\ v * x <= v * p.
+Proof.
+  intros Hc Hh Hx. apply abs_in in Hx. destruct (Rle_lt_dec 0 v) as [P|N].
+  - exists (tm_add cm hm), (c + h). split; [cbn; auto|]. split; [apply holds_add; assumption | nra].
+  - exists (tm_sub cm hm), (c - h). split; [cbn; auto|]. split; [apply holds_sub; assumption | nra].
+Qed.
+
+Lemma box_covers s cm hm c h x : holdsv cm s c -> holdsv hm s h -> in_box h (sub x c) ->
+  covers s (of_points (box_corners cm hm)) x.
+Proof.
+  intros (C1 & C2 & C3) (H1 & H2 & H3) (B1 & B2 & B3). apply points_cover. intros v. unfold sub, add, scale in B1, B2, B3.
+  cbn [vx vy vz] in B1, B2, B3.
+  destruct (farther_end s (vx v) (vx x) (vx c) (vx h) _ _ C1 H1) as (m1 & p1 & I1 & P1 & L1);
+    [replace (vx x - vx c) with (vx x + -1 * vx c) by ring; exact B1|].
+  destruct (farther_end s (vy v) (vy x) (vy c) (vy h) _ _ C2 H2) as (m2 & p2 & I2 & P2 & L2);
+    [replace (vy x - vy c) with (vy x + -1 * vy c) by ring; exact B2|].
+  destruct (farther_end s (vz v) (vz x) (vz c) (vz h) _ _ C3 H3) as (m3 & p3 & I3 & P3 & L3);
+    [replace (vz x - vz c) with (vz x + -1 * vz c) by ring; exact B3|].
+  exists (Tvec m1 m2 m3), (Vec p1 p2 p3). split; [|split].
+  - unfold box_corners. apply in_flat_map. exists m1. split; [exact I1|].
+    apply in_flat_map. exists m2. split; [exact I2|]. apply in_map. exact I3.
+  - repeat split; assumption.
+  - unfold dot; cbn [vx vy vz]. lra.
+Qed.
+
+Lemma ball_covers s cs r rr x c : (forall v, exists m p, In m cs /\ holdsv m s p /\ dot v c <= dot v p) ->
+  norm (sub x c) <= rr -> rr <= V r -> covers s (Outline (map at_point cs) r) x.
+Proof.
+  intros H N R v. destruct (H v) as (m & p & Im & Hm & L). exists (at_point m), p, (Vec 0 0 0). cbn [corners radius].
+  split; [apply in_map; exact Im|]. split; [apply at_point_holds; exact Hm|]. rewrite norm_nil.
+  assert (E : dot v x = dot v c + dot v (sub x c)) by (unfold dot, sub, add, scale; cbn; ring).
+  pose proof (cauchy v (sub x c)). pose proof (norm_nonneg v).
+  assert (norm v * norm (sub x c) <= norm v * V r) by (apply Rmult_le_compat_l; lra). lra.
+Qed.
+
+Lemma origin_holds s : holdsv origin_tm s (Vec 0 0 0).
+Proof. repeat split; apply holds_zero. Qed.
+
+Lemma ends_hold s l : holdsv (upper_end l) s (Vec 0 0 (real l / 2)) /\ holdsv (lower_end l) s (Vec 0 0 (- (real l / 2))).
+Proof.
+  pose proof (holds_number s (half l)) as H. rewrite real_half in H.
+  repeat split; cbn [upper_end lower_end tx ty tz vx vy vz]; try apply holds_zero; [exact H | apply holds_opp; exact H].
+Qed.
+
+(** In the plane of a disc: v.x is at most |v| r. *)
+Lemma in_disc v x r : norm (Vec (vx x) (vy x) 0) <= r -> 0 <= r ->
+  vx v * vx x + vy v * vy x <= norm (times (Vec r r 0) v).
+Proof.
+  intros N R. pose proof (cauchy (Vec (vx v) (vy v) 0) (Vec (vx x) (vy x) 0)) as C.
+  assert (E : norm (times (Vec r r 0) v) = r * norm (Vec (vx v) (vy v) 0)).
+  { unfold norm. replace (dot (times (Vec r r 0) v) (times (Vec r r 0) v)) with
+      (r * r * dot (Vec (vx v) (vy v) 0) (Vec (vx v) (vy v) 0)) by (unfold dot, times; cbn; ring).
+    rewrite sqrt_mult_alt by (apply Rmult_le_pos; exact R). rewrite sqrt_square by exact R. reflexivity. }
+  rewrite E. unfold dot in C at 1. cbn [vx vy vz] in C.
+  pose proof (norm_nonneg (Vec (vx v) (vy v) 0)). 
+  assert (norm (Vec (vx v) (vy v) 0) * norm (Vec (vx x) (vy x) 0) <= norm (Vec (vx v) (vy v) 0) * r)
+    by (apply Rmult_le_compat_l; assumption). lra.
+Qed.
+
+Lemma disc_holds s m p r : holdsv m s p -> holds_round (disc m r) s p (Vec (real r) (real r) 0).
+Proof. intros H. split; [exact H|]. repeat split; try apply holds_number. apply holds_zero. Qed.
+
+Theorem outlines_cover g x : inside g x -> exists o, In o (outlines g) /\ forall s, covers s o x.
+Proof.
+  destruct g as [ts | cells | sizes | r | r l | a | r l | r l | ps]; cbn [inside outlines].
+  - intros (a & b & c & I & H). exists (of_points [tm_point a; tm_point b; tm_point c]).
+    split; [apply in_map_iff; exists (a, b, c); split; [reflexivity | exact I]|]. intros s.
+    eapply hull_covers; [|exact H]. repeat (apply Forall2_cons; [apply holdsv_point|]). apply Forall2_nil.
+  - intros (c & h & I & H). exists (of_points (box_corners (tm_point c) (tm_point h))).
+    split; [apply in_map_iff; exists (c, h); split; [reflexivity | exact I]|]. intros s.
+    eapply box_covers; [apply holdsv_point | apply holdsv_point | exact H].
+  - intros H. eexists. split; [left; reflexivity|]. intros s.
+    apply box_covers with (c := Vec 0 0 0) (h := point (half3 sizes)); [apply origin_holds | apply holdsv_point|].
+    unfold in_box, sub, add, scale, point, half3 in *; cbn [vx vy vz n1 n2 n3] in *. rewrite !real_half.
+    destruct H as (H1 & H2 & H3).
+    replace (vx x + -1 * 0) with (vx x) by ring. replace (vy x + -1 * 0) with (vy x) by ring.
+    replace (vz x + -1 * 0) with (vz x) by ring. repeat split; unfold Rdiv; rewrite Rmult_comm; assumption || lra.
+  - intros H. eexists. split; [left; reflexivity|]. intros s.
+    apply (ball_covers s [origin_tm]) with (rr := real r) (c := Vec 0 0 0).
+    + intros v. exists origin_tm, (Vec 0 0 0). split; [left; reflexivity|]. split; [apply origin_holds | lra].
+    + replace (sub x (Vec 0 0 0)) with x; [exact H|]. destruct x. unfold sub, add, scale; cbn. f_equal; ring.
+    + apply number_up_ok.
+  - intros (z & Hz & H). eexists. split; [left; reflexivity|]. intros s.
+    apply (ball_covers s [upper_end l; lower_end l]) with (rr := real r) (c := Vec 0 0 z); [|exact H | apply number_up_ok].
+    intros v. destruct (ends_hold s l) as [U L]. destruct (Rle_lt_dec 0 (vz v)) as [P|N].
+    + exists (upper_end l), (Vec 0 0 (real l / 2)). split; [left; reflexivity|]. split; [exact U|].
+      unfold dot; cbn [vx vy vz]. nra.
+    + exists (lower_end l), (Vec 0 0 (- (real l / 2))). split; [right; left; reflexivity|]. split; [exact L|].
+      unfold dot; cbn [vx vy vz]. nra.
+  - intros (u & Nu & ->). eexists. split; [left; reflexivity|]. intros s v.
+    exists (Round origin_tm (Some (tm_point a))), (Vec 0 0 0), (point a). cbn [corners radius].
+    split; [left; reflexivity|]. split; [split; [apply origin_holds | apply holdsv_point]|]. rewrite V_0.
+    pose proof (cauchy (times (point a) v) u) as C. pose proof (norm_nonneg (times (point a) v)).
+    assert (norm (times (point a) v) * norm u <= norm (times (point a) v) * 1) by (apply Rmult_le_compat_l; assumption).
+    replace (dot v _) with (dot (times (point a) v) u) by (unfold dot, times, point; cbn; ring).
+    replace (dot v (Vec 0 0 0)) with 0 by (unfold dot; cbn; ring). lra.
+  - intros (N & Hz). eexists. split; [left; reflexivity|]. intros s v. destruct (ends_hold s l) as [U L].
+    assert (R : 0 <= real r) by (pose proof (norm_nonneg (Vec (vx x) (vy x) 0)); lra).
+    pose proof (in_disc v x (real r) N R) as D. cbn [corners radius]. rewrite V_0.
+    destruct (Rle_lt_dec 0 (vz v)) as [P|G].
+    + exists (disc (upper_end l) r), (Vec 0 0 (real l / 2)), (Vec (real r) (real r) 0).
+      split; [left; reflexivity|]. split; [apply disc_holds; exact U|]. unfold dot; cbn [vx vy vz]. nra.
+    + exists (disc (lower_end l) r), (Vec 0 0 (- (real l / 2))), (Vec (real r) (real r) 0).
+      split; [right; left; reflexivity|]. split; [apply disc_holds; exact L|]. unfold dot; cbn [vx vy vz]. nra.
+  - intros (h & Hh & N & Hz). eexists. split; [left; reflexivity|]. intros s v. destruct (ends_hold s l) as [U L].
+    cbn [corners radius]. rewrite V_0.
+    assert (D : vx v * vx x + vy v * vy x <= (1 - h) * norm (times (Vec (real r) (real r) 0) v)).
+    { pose proof (norm_nonneg (Vec (vx x) (vy x) 0)).
+      pose proof (in_disc v x ((1 - h) * real r) N ltac:(lra)) as D.
+      eapply Rle_trans; [exact D|]. apply Req_le. unfold norm.
+      replace (dot (times (Vec ((1 - h) * real r) ((1 - h) * real r) 0) v) _) with
+        ((1 - h) * (1 - h) * dot (times (Vec (real r) (real r) 0) v) (times (Vec (real r) (real r) 0) v))
+        by (unfold dot, times; cbn; ring).
+      rewrite sqrt_mult_alt by (apply Rmult_le_pos; lra). rewrite sqrt_square by lra. reflexivity. }
+    set (n := norm (times (Vec (real r) (real r) 0) v)) in *.
+    (* v.x is at most the mean, with weights h and 1 - h, of what apex and base reach *)
+    assert (M : dot v x <= h * (vz v * (real l / 2)) + (1 - h) * (vz v * - (real l / 2) + n)).
+    { unfold dot. rewrite Hz. nra. }
+    destruct (Rle_lt_dec (vz v * - (real l / 2) + n) (vz v * (real l / 2))) as [P|G].
+    + exists (at_point (upper_end l)), (Vec 0 0 (real l / 2)), (Vec 0 0 0).
+      split; [left; reflexivity|]. split; [apply at_point_holds; exact U|]. rewrite norm_nil.
+      unfold dot at 2; cbn [vx vy vz]. nra.
+    + exists (disc (lower_end l) r), (Vec 0 0 (- (real l / 2))), (Vec (real r) (real r) 0).
+      split; [right; left; reflexivity|]. split; [apply disc_holds; exact L|]. fold n.
+      unfold dot at 2; cbn [vx vy vz]. nra.
+  - intros H. eexists. split; [left; reflexivity|]. intros s. apply hull_covers with (ps := map point ps); [|exact H].
+    clear H. induction ps as [|p ps IH]; cbn; constructor; [apply holdsv_point | exact IH].
+Qed.
+
+(** ** How far pieces reach *)
+
+Definition upper_join (a b : option upper) : option upper :=
+  match a, b with Some u, Some w => Some (upper_max u w) | None, _ => b | _, None => a end.
+
+(** Above the length of a vector of models. With l the linear part, the length |l(s)| is convex: not above the line
+    between its values at s = -1 and s = 1. The rest adds its magnitude. *)
+Definition end_length (v : tvec) (sign : Z) : Z :=
+  let x := (c0 (tx v) + sign * c1 (tx v))%Z in
+  let y := (c0 (ty v) + sign * c1 (ty v))%Z in
+  let z := (c0 (tz v) + sign * c1 (tz v))%Z in Z.sqrt_up (x * x + y * y + z * z).
+Definition chord (v : tvec) : upper :=
+  let e0 := end_length v (-1) in let e1 := end_length v 1 in
+  let rest := (Z.abs (c2 (tx v)) + rem (tx v) + (Z.abs (c2 (ty v)) + rem (ty v)) + (Z.abs (c2 (tz v)) + rem (tz v)))%Z in
+  Upper (e0 + rest) ((e0 + e1) / 2 + 1 + rest) (e1 + rest).
+
+Definition ttimes (a v : tvec) : tvec := Tvec (tm_mul (tx a) (tx v)) (tm_mul (ty a) (ty v)) (tm_mul (tz a) (tz v)).
+
+Definition corner_reach (f : func) (c : round) : upper :=
+  let u := upper_of (tm_add (tdot (centre c) (fv f)) (fd f)) in
+  match semiaxes c with None => u | Some a => upper_add u (chord (ttimes a (fv f))) end.
+
+Fixpoint farthest (f : func) (cs : list round) : option upper :=
+  match cs with [] => None | c :: rest => upper_join (Some (corner_reach f c)) (farthest f rest) end.
+
+(** [length]: at least that of the direction. *)
+Definition reach_one (f : func) (length : Z) (o : outline) : option upper :=
+  option_map (fun u => upper_add u (upper_const (mulup (Z.max 0 (radius o)) length))) (farthest f (corners o)).
+
+Fixpoint reach (f : func) (length : Z) (os : list outline) : option upper :=
+  match os with [] => None | o :: rest => upper_join (reach_one f length o) (reach f length rest) end.
+
+Definition below_opt (u : option upper) (s y : R) : Prop := match u with Some w => below w s y | None => False end.
+
+Section AtOneTime.
+Variable s : R.
+Hypothesis Hs : Rabs s <= 1.
+
+Lemma below_join_l a b y : below_opt a s y -> below_opt (upper_join a b) s y.
+Proof.
+  destruct a, b; cbn; try tauto. intros H. eapply below_mono; [exact Hs | apply upper_max_l | exact H].
+Qed.
+Lemma below_join_r a b y : below_opt b s y -> below_opt (upper_join a b) s y.
+Proof.
+  destruct a, b; cbn; try tauto. intros H. eapply below_mono; [exact Hs | apply upper_max_r | exact H].
+Qed.
+
+Lemma below_weaken u x y : x <= y -> below u s y -> below u s x.
+Proof. unfold below. intros. lra. Qed.
+
+Lemma triangle a b : norm (add a b) <= norm a + norm b.
+Proof.
+  pose proof (norm_nonneg a). pose proof (norm_nonneg b). pose proof (cauchy a b) as C.
+  unfold norm at 1. rewrite <- (sqrt_square (norm a + norm b)) by lra. apply sqrt_le_1_alt.
+  assert (Ha : norm a * norm a = dot a a) by (apply sqrt_sqrt, dot_nonneg).
+  assert (Hb : norm b * norm b = dot b b) by (apply sqrt_sqrt, dot_nonneg).
+  assert (E : dot (add a b) (add a b) = dot a a + 2 * dot a b + dot b b) by (unfold dot, add; cbn; ring). nra.
+Qed.
+
+Lemma norm_sum v : norm v <= Rabs (vx v) + Rabs (vy v) + Rabs (vz v).
+Proof.
+  pose proof (Rabs_pos (vx v)). pose proof (Rabs_pos (vy v)). pose proof (Rabs_pos (vz v)).
+  unfold norm. rewrite <- (sqrt_square (Rabs (vx v) + Rabs (vy v) + Rabs (vz v))) by lra. apply sqrt_le_1_alt.
+  assert (S : forall x, x * x = Rabs x * Rabs x) by (intros x; rewrite <- Rabs_mult; symmetry; apply Rabs_right; nra).
+  unfold dot. rewrite (S (vx v)), (S (vy v)), (S (vz v)). nra.
+Qed.
+
+Lemma integer_length x y z : norm (Vec (V x) (V y) (V z)) <= V (Z.sqrt_up (x * x + y * y + z * z)).
+Proof.
+  unfold norm, dot; cbn [vx vy vz]. set (m := (x * x + y * y + z * z)%Z).
+  assert (Hm : (0 <= m)%Z) by (unfold m; nia).
+  assert (L : (m <= Z.sqrt_up m * Z.sqrt_up m)%Z).
+  { destruct (Z.eq_dec m 0) as [->|N]; [reflexivity|]. apply Z.sqrt_up_spec. lia. }
+  pose proof (Z.sqrt_up_nonneg m) as H0.
+  assert (E : V x * V x + V y * V y + V z * V z = IZR m * (ulp * ulp)).
+  { unfold m, V. rewrite !plus_IZR, !mult_IZR. ring. }
+  rewrite E. pose proof ulp_pos. rewrite <- (sqrt_square (V (Z.sqrt_up m))).
+  - apply sqrt_le_1_alt. unfold V. replace (IZR (Z.sqrt_up m) * ulp * (IZR (Z.sqrt_up m) * ulp)) with
+      (IZR (Z.sqrt_up m * Z.sqrt_up m) * (ulp * ulp)) by (rewrite mult_IZR; ring).
+    apply Rmult_le_compat_r; [apply Rmult_le_pos; lra | apply IZR_le; exact L].
+  - rewrite <- V_0. apply V_le. exact H0.
+Qed.
+
+(** The part of a model that is not linear. *)
+Lemma rest_ok m x : holds m s x -> Rabs (x - (V (c0 m) + V (c1 m) * s)) <= V (Z.abs (c2 m) + rem m).
+Proof.
+  intros H. rewrite V_add, V_abs. unfold holds, poly in H.
+  replace (x - _) with ((x - (V (c0 m) + V (c1 m) * s + V (c2 m) * (s * s))) + V (c2 m) * (s * s)) by ring.
+  assert (Q : Rabs (s * s) <= 1) by (rewrite <- (Rmult_1_r 1); apply abs_product_le; exact Hs).
+  pose proof (abs_times_le (V (c2 m)) (s * s) Q). eapply Rle_trans; [apply Rabs_triang|]. lra.
+Qed.
+
+Lemma chord_ok m v : holdsv m s v -> below (chord m) s (norm v).
+Proof.
+  intros (Hx & Hy & Hz). apply rest_ok in Hx, Hy, Hz.
+  set (lin := fun t => Vec (V (c0 (tx m)) + V (c1 (tx m)) * t) (V (c0 (ty m)) + V (c1 (ty m)) * t)
+                           (V (c0 (tz m)) + V (c1 (tz m)) * t)).
+  set (rest := (Z.abs (c2 (tx m)) + rem (tx m) + (Z.abs (c2 (ty m)) + rem (ty m)) + (Z.abs (c2 (tz m)) + rem (tz m)))%Z).
+  assert (E0 : norm (lin (-1)) <= V (end_length m (-1))).
+  { unfold end_length. eapply Rle_trans; [|apply integer_length]. apply Req_le. f_equal. unfold lin. 
+    f_equal; rewrite V_add; unfold V; rewrite mult_IZR; ring. }
+  assert (E1 : norm (lin 1) <= V (end_length m 1)).
+  { unfold end_length. eapply Rle_trans; [|apply integer_length]. apply Req_le. f_equal. unfold lin.
+    f_equal; rewrite V_add; unfold V; rewrite mult_IZR; ring. }
+  assert (R : norm (sub v (lin s)) <= V rest).
+  { eapply Rle_trans; [apply norm_sum|]. unfold rest. rewrite (V_add (_ + _ + _)), (V_add (_ + _)).
+    unfold sub, add, scale, lin; cbn [vx vy vz].
+    replace (vx v + -1 * _) with (vx v - (V (c0 (tx m)) + V (c1 (tx m)) * s)) by ring.
+    replace (vy v + -1 * _) with (vy v - (V (c0 (ty m)) + V (c1 (ty m)) * s)) by ring.
+    replace (vz v + -1 * _) with (vz v - (V (c0 (tz m)) + V (c1 (tz m)) * s)) by ring. lra. }
+  pose proof (abs_in _ _ Hs) as S.
+  assert (L : norm (lin s) <= (1 - s) / 2 * norm (lin (-1)) + (1 + s) / 2 * norm (lin 1)).
+  { assert (K : forall k w, 0 <= k -> norm (scale k w) = k * norm w).
+    { intros k w Hk. unfold norm. replace (dot (scale k w) (scale k w)) with (k * k * dot w w)
+        by (unfold dot, scale; cbn; ring).
+      rewrite sqrt_mult_alt by (apply Rmult_le_pos; exact Hk). rewrite sqrt_square by exact Hk. reflexivity. }
+    rewrite <- !K by lra. replace (lin s) with (add (scale ((1 - s) / 2) (lin (-1))) (scale ((1 + s) / 2) (lin 1))).
+    - apply triangle.
+    - unfold lin, add, scale; cbn [vx vy vz]. f_equal; field. }
+  assert (T : norm v <= norm (lin s) + norm (sub v (lin s))).
+  { eapply Rle_trans; [|apply triangle]. apply Req_le. f_equal. destruct v as [p q r]. unfold add, sub, scale, lin.
+    unfold add; cbn [vx vy vz]. f_equal; ring. }
+  assert (H2 : V (end_length m (-1)) / 2 + V (end_length m 1) / 2 <= V ((end_length m (-1) + end_length m 1) / 2 + 1)).
+  { pose proof (divz_err (end_length m (-1) + end_length m 1) 2 ltac:(lia)) as D. unfold divz in D.
+    rewrite V_add in D. rewrite V_add, (V_ulps 1). lra. }
+  unfold below, chord; cbn [u0 u1 u2]. fold rest. rewrite !(V_add _ rest).
+  destruct (weights s Hs) as (W0 & W1 & W2).
+  set (e0 := V (end_length m (-1))) in *. set (e1 := V (end_length m 1)) in *.
+  set (em := V ((end_length m (-1) + end_length m 1) / 2 + 1)) in *.
+  assert (M : (e0 / 2 + e1 / 2) * ((1 - s) * (1 + s) / 2) <= em * ((1 - s) * (1 + s) / 2))
+    by (apply Rmult_le_compat_r; assumption).
+  assert (Q : (1 - s) / 2 * norm (lin (-1)) + (1 + s) / 2 * norm (lin 1) <= (1 - s) / 2 * e0 + (1 + s) / 2 * e1)
+    by (apply Rplus_le_compat; apply Rmult_le_compat_l; lra).
+  apply Rle_trans with ((1 - s) / 2 * e0 + (1 + s) / 2 * e1 + V rest); [lra|].
+  apply Rle_trans with (e0 * ((1 - s) * (1 - s) / 4) + (e0 / 2 + e1 / 2) * ((1 - s) * (1 + s) / 2) +
+    e1 * ((1 + s) * (1 + s) / 4) + V rest); [apply Req_le; field|].
+  apply Rle_trans with (e0 * ((1 - s) * (1 - s) / 4) + em * ((1 - s) * (1 + s) / 2) +
+    e1 * ((1 + s) * (1 + s) / 4) + V rest); [lra|]. apply Req_le. field.
+Qed.
+
+Lemma farthest_ok f v d cs c p a : holdsf s f v d -> In c cs -> holds_round c s p a ->
+  below_opt (farthest f cs) s (dot v p + d + norm (times a v)).
+Proof.
+  intros [Hv Hd] I [Hc Ha]. induction cs as [|c' cs IH]; [destruct I|]. cbn [farthest]. destruct I as [->|I].
+  - apply below_join_l. cbn [below_opt]. unfold corner_reach.
+    assert (C : below (upper_of (tm_add (tdot (centre c) (fv f)) (fd f))) s (dot v p + d)).
+    { apply below_of. apply holds_add; [|exact Hd].
+      eapply holds_eq; [|apply holds_dot; [exact Hs | exact Hc | exact Hv]]. unfold dot. ring. }
+    destruct (semiaxes c) as [am|].
+    + apply below_add; [exact C|]. apply chord_ok. destruct Ha as (A1 & A2 & A3), Hv as (V1 & V2 & V3).
+      repeat split; apply holds_mul; assumption.
+    + subst a. rewrite norm_nil, Rplus_0_r. exact C.
+  - apply below_join_r. apply IH. exact I.
+Qed.
+
+Lemma reach_one_ok f v d l o x : holdsf s f v d -> norm v <= V l -> covers s o x ->
+  below_opt (reach_one f l o) s (dot v x + d).
+Proof.
+  intros Hf Hl C. destruct (C v) as (c & p & a & I & Hc & L).
+  pose proof (farthest_ok f v d (corners o) c p a Hf I Hc) as F. unfold reach_one.
+  destruct (farthest f (corners o)) as [u|]; [|destruct F]. cbn [option_map below_opt] in *.
+  apply below_weaken with ((dot v p + d + norm (times a v)) + V (radius o) * norm v); [lra|].
+  apply below_add; [exact F|]. apply below_const.
+  pose proof (norm_nonneg v). destruct (V_max 0 (radius o)) as [M1 M2]. rewrite V_0 in M1.
+  apply Rle_trans with (V (Z.max 0 (radius o)) * norm v); [apply Rmult_le_compat_r; assumption|].
+  eapply Rle_trans; [|apply mulup_ge]. apply Rmult_le_compat_l; assumption.
+Qed.
+
+Lemma reach_ok f v d l os o x : holdsf s f v d -> norm v <= V l -> In o os -> covers s o x ->
+  below_opt (reach f l os) s (dot v x + d).
+Proof.
+  intros Hf Hl I C. induction os as [|o' os IH]; [destruct I|]. cbn [reach]. destruct I as [->|I].
+  - apply below_join_l. apply reach_one_ok; assumption.
+  - apply below_join_r. apply IH. exact I.
+Qed.
+
+End AtOneTime.
+
+(** ** The leaf *)
+
+(** A body, prepared; a partner with some of its pieces, the margin, rounded up, and the time up to which the pair is
+    ignored, rounded down. *)
+Record sbody := Sbody { sb_frame : nat; sb_place : step }.
+Record partner := Partner { p_body : sbody; p_pieces : list outline; p_margin : Z; p_from : Z }.
+
+(** A direction that is constant in a frame: three integers in units of 2^-64. *)
+Record direction := Direction { d_frame : nat; d1 : Z; d2 : Z; d3 : Z }.
+Definition length_up (n : direction) : Z := Z.sqrt_up (d1 n * d1 n + d2 n * d2 n + d3 n * d3 n).
+Definition func_of (n : direction) : func := Func (Tvec (const (d1 n) 0) (const (d2 n) 0) (const (d3 n) 0)) tm_zero.
+Definition opposite (f : func) : func :=
+  Func (Tvec (tm_opp (tx (fv f))) (tm_opp (ty (fv f))) (tm_opp (tz (fv f)))) (tm_opp (fd f)).
+
+Definition shown (fs : tree) (known : list (nat * func)) (l : Z) (ua : option upper) (p : partner) : bool :=
+  match at_frame (length fs) fs known (sb_frame (p_body p)) with
+  | None => false
+  | Some f =>
+      match ua, reach (down (sb_place (p_body p)) f) l (p_pieces p) with
+      | Some u, Some w => negative (upper_add (upper_add u w) (upper_const (mulup (Z.max 0 (p_margin p)) l)))
+      | _, _ => true                                       (* a body without points *)
+      end
+  end.
+
+(** The partners that are not shown to be apart from pieces [os] of A over [a, b]. *)
+Definition not_shown (sfs : list sframe) (q : spiece) (A : sbody) (os : list outline) (n : direction)
+    (ps : list partner) (a b : Z) : list partner :=
+  let fs := tree_at sfs q a b in
+  let known := chain (length fs) fs (d_frame n) (func_of n) in
+  match at_frame (length fs) fs known (sb_frame A) with
+  | None => ps
+  | Some f =>
+      let l := length_up n in
+      let ua := reach (opposite (down (sb_place A) f)) l os in
+      filter (fun p => negb (shown fs known l ua p)) ps
+  end.
+
+(** Time is halved for those that are left, [fuel] times. *)
+Fixpoint separated (fuel : nat) (sfs : list sframe) (q : spiece) (A : sbody) (os : list outline) (n : direction)
+    (ps : list partner) (a b : Z) : bool :=
+  match not_shown sfs q A os n ps a b with
+  | [] => true
+  | again =>
+      match fuel with
+      | O => false
+      | S k =>
+          let c := ((a + b) / 2)%Z in
+          separated k sfs q A os n again a c && separated k sfs q A os n again c b
+      end
+  end.
+
+(** A keeps more than its margin from a partner, where the frames stand at P. *)
+Definition keeps (P : nat -> vec -> vec) (A : sbody) (os : list outline) (p : partner) : Prop :=
+  forall F G, (forall s, holds_step s (sb_place A) F) -> (forall s, holds_step s (sb_place (p_body p)) G) ->
+  forall x y o o', In o os -> (forall s, covers s o x) -> In o' (p_pieces p) -> (forall s, covers s o' y) ->
+  V (p_margin p) < norm (sub (P (sb_frame A) (F x)) (P (sb_frame (p_body p)) (G y))).
+
+Lemma length_up_ok n : norm (Vec (V (d1 n)) (V (d2 n)) (V (d3 n))) <= V (length_up n).
+Proof. apply integer_length. Qed.
+
+Lemma opposite_ok s f v d : holdsf s f v d -> holdsf s (opposite f) (scale (-1) v) (- d).
+Proof.
+  intros ((A & B & C) & D). split; [|apply holds_opp; exact D]. unfold scale.
+  repeat split; cbn [opposite fv tx ty tz vx vy vz];
+    (eapply holds_eq; [|apply holds_opp; eassumption]; ring).
+Qed.
+
+(** Every frame but the world stands in one that is listed before it, and every body in a frame. *)
+Definition well_formed (w : world) :=
+  (forall i f, nth_error (frames w) i = Some f -> (parent f <= i)%nat) /\
+  (forall b, In b (bodies w) -> (body_frame b <= length (frames w))%nat).
+
+Section Sound.
+Variable w : world.
+Hypothesis WF : well_formed w.
+Variable pc : piece.
+Let sfs := map sframe_of (frames w).
+Let q := spiece_of pc.
+
+Lemma tree_parents a b k p sts : nth_error (tree_at sfs q a b) k = Some (p, sts) -> (p <= k)%nat.
+Proof.
+  unfold tree_at, sfs. rewrite map_map, nth_error_map. destruct (nth_error (frames w) k) as [f|] eqn:N; [|discriminate].
+  cbn. intros [= <- _]. apply (proj1 WF). exact N.
+Qed.
+Lemma tree_length a b : length (tree_at sfs q a b) = length (frames w).
+Proof. unfold tree_at, sfs. rewrite !map_length. reflexivity. Qed.
+
+Lemma not_shown_ok A os n ps a b t P p : (d_frame n <= length (frames w))%nat ->
+  V a <= t <= V b -> frames_at w (value pc t) P -> In p ps -> 
+  In p (not_shown sfs q A os n ps a b) \/ keeps P A os p.
+Proof.
+  intros Hn Ht HP Ip. unfold not_shown. set (fs := tree_at sfs q a b).
+  set (known := chain (length fs) fs (d_frame n) (func_of n)).
+  destruct (at_frame (length fs) fs known (sb_frame A)) as [f|] eqn:EA; [|left; exact Ip].
+  set (ua := reach (opposite (down (sb_place A) f)) (length_up n) os).
+  destruct (shown fs known (length_up n) ua p) eqn:ES.
+  2:{ left. apply filter_In. split; [exact Ip|]. rewrite ES. reflexivity. }
+  right. intros F G HF HG x y o o' Io Co Io' Co'.
+  destruct (time_ok a b t Ht) as (s & Hs & Hts).
+  specialize (HF s). specialize (HG s). specialize (Co s). specialize (Co' s).
+  assert (CH : forall i k sts, nth_error fs i = Some (k, sts) ->
+    exists E, holds_steps s sts E /\ forall x, P (S i) x = P k (E x)) by (apply tree_ok with t; assumption).
+  set (n0 := Vec (V (d1 n)) (V (d2 n)) (V (d3 n))).
+  assert (Hn0 : holdsf s (func_of n) n0 0).
+  { split; [repeat split; apply holds_exact | apply holds_zero]. }
+  destruct (chain_ok s Hs fs P (proj1 HP) CH (length fs) (d_frame n) (func_of n) n0 0) as (wv & e & Nw & _ & K).
+  - intros k p' sts. apply tree_parents.
+  - unfold fs. rewrite tree_length. exact Hn.
+  - unfold fs. rewrite tree_length. exact Hn.
+  - exact Hn0.
+  - fold known in K.
+    pose proof (at_frame_ok s Hs fs P CH (length fs) wv e known K (sb_frame A) f EA) as IA.
+    destruct (body_ok s Hs P wv e _ f _ F IA HF) as (va & da & Ha & Na & Xa).
+    unfold shown in ES.
+    destruct (at_frame (length fs) fs known (sb_frame (p_body p))) as [g|] eqn:EB; [|discriminate].
+    pose proof (at_frame_ok s Hs fs P CH (length fs) wv e known K _ g EB) as IB.
+    destruct (body_ok s Hs P wv e _ g _ G IB HG) as (vb & db & Hb & Nb & Xb).
+    assert (LN : forall v, dot v v = dot wv wv -> norm v <= V (length_up n)).
+    { intros v E. unfold norm. rewrite E, Nw. apply length_up_ok. }
+    assert (La : norm (scale (-1) va) <= V (length_up n)).
+    { apply LN. rewrite <- Na. unfold dot, scale; cbn. ring. }
+    pose proof (reach_ok s Hs _ _ _ (length_up n) os o x (opposite_ok _ _ _ _ Ha) La Io Co) as Ra. fold ua in Ra.
+    pose proof (reach_ok s Hs _ _ _ (length_up n) (p_pieces p) o' y Hb (LN _ Nb) Io' Co') as Rb.
+    destruct ua as [u|]; [|destruct Ra]. destruct (reach _ _ (p_pieces p)) as [u'|]; [|destruct Rb].
+    cbn [below_opt] in Ra, Rb.
+    set (mz := Z.max 0 (p_margin p)) in *. destruct (V_max 0 (p_margin p)) as [M0 M1]. fold mz in M0, M1. rewrite V_0 in M0.
+    assert (M : V mz * norm wv <= V (mulup mz (length_up n))).
+    { eapply Rle_trans; [|apply mulup_ge]. apply Rmult_le_compat_l; [exact M0 | apply LN; reflexivity]. }
+    pose proof (below_negative _ s _ Hs ES (below_add _ _ s _ _ (below_add _ _ s _ _ Ra Rb) (below_const _ s _ M))) as NEG.
+    set (X := P (sb_frame A) (F x)) in *. set (Y := P (sb_frame (p_body p)) (G y)) in *.
+    specialize (Xa x). specialize (Xb y). fold X in Xa. fold Y in Xb.
+    assert (E : dot (scale (-1) va) x + - da = - (dot wv X + e)).
+    { rewrite Xa. unfold dot, scale; cbn. ring. }
+    rewrite E, <- Xb in NEG.
+    assert (D : V mz * norm wv < dot wv (sub X Y)).
+    { replace (dot wv (sub X Y)) with (dot wv X - dot wv Y) by (unfold dot, sub, add, scale; cbn; ring). lra. }
+    pose proof (cauchy wv (sub X Y)) as CS. pose proof (norm_nonneg wv).
+    apply Rle_lt_trans with (V mz); [exact M1|].
+    apply Rnot_le_lt. intros L. assert (norm wv * norm (sub X Y) <= norm wv * V mz) by (apply Rmult_le_compat_l; assumption).
+    lra.
+Qed.
+
+Theorem separated_ok fuel A os n : (d_frame n <= length (frames w))%nat ->
+  forall ps a b, separated fuel sfs q A os n ps a b = true ->
+  forall t P p, V a <= t <= V b -> frames_at w (value pc t) P -> In p ps -> keeps P A os p.
+Proof.
+  intros Hn. induction fuel as [|k IH]; intros ps a b H t P p Ht HP Ip;
+    destruct (not_shown_ok A os n ps a b t P p Hn Ht HP Ip) as [I|K]; auto; cbn [separated] in H;
+    destruct (not_shown sfs q A os n ps a b) as [|p' again]; try (destruct I; fail); try discriminate.
+  apply andb_true_iff in H. destruct H as [H1 H2].
+  destruct (Rle_lt_dec t (V ((a + b) / 2))) as [L|G]; [eapply IH; [exact H1 | | exact HP | exact I]
+                                                     | eapply IH; [exact H2 | | exact HP | exact I]]; lra.
+Qed.
+
+End Sound.

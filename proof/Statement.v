@@ -1,0 +1,222 @@
+(* SPDX-License-Identifier: BSD-3-Clause *)
+(** * What is claimed of a world and a motion
+
+    This file is to be read by people: it is all that the theorem at the end of Walk.v is about. It says in real numbers
+    what doc/CERTIFICATES.md, "What is claimed", says in words, for the part that doc/PROVEN_CHECKER.md names: frames
+    that turn and slide, points with radius, margins, allowed pairs. Nothing here computes. *)
+From Coq Require Import Reals ZArith String Bool List.
+Import ListNotations.
+Open Scope R_scope.
+
+(** ** Vectors *)
+
+Record vec := Vec { vx : R; vy : R; vz : R }.
+
+Definition add (a b : vec) := Vec (vx a + vx b) (vy a + vy b) (vz a + vz b).
+Definition scale (l : R) (a : vec) := Vec (l * vx a) (l * vy a) (l * vz a).
+Definition sub (a b : vec) := add a (scale (-1) b).
+Definition dot (a b : vec) := vx a * vx b + vy a * vy b + vz a * vz b.
+Definition norm (a : vec) := sqrt (dot a a).
+Definition cross (a b : vec) :=
+  Vec (vy a * vz b - vz a * vy b) (vz a * vx b - vx a * vz b) (vx a * vy b - vy a * vx b).
+
+(** No entry of [a] is off the one of [b] by more than [e]. *)
+Definition near (e : R) (a b : vec) :=
+  Rabs (vx a - vx b) <= e /\ Rabs (vy a - vy b) <= e /\ Rabs (vz a - vz b) <= e.
+
+(** Matrices by their rows. *)
+Record mat := Mat { row1 : vec; row2 : vec; row3 : vec }.
+
+Definition apply (m : mat) (x : vec) := Vec (dot (row1 m) x) (dot (row2 m) x) (dot (row3 m) x).
+Definition column1 (m : mat) := Vec (vx (row1 m)) (vx (row2 m)) (vx (row3 m)).
+Definition column2 (m : mat) := Vec (vy (row1 m)) (vy (row2 m)) (vy (row3 m)).
+Definition column3 (m : mat) := Vec (vz (row1 m)) (vz (row2 m)) (vz (row3 m)).
+
+(** A proper rotation: columns of length 1, each normal to the others, right-handed. *)
+Definition rotation (m : mat) :=
+  dot (column1 m) (column1 m) = 1 /\ dot (column2 m) (column2 m) = 1 /\ dot (column3 m) (column3 m) = 1 /\
+  dot (column1 m) (column2 m) = 0 /\ dot (column1 m) (column3 m) = 0 /\ dot (column2 m) (column3 m) = 0 /\
+  dot (row1 m) (cross (row2 m) (row3 m)) = 1.
+
+(** ** What the files hold *)
+
+(** A double: mantissa * 2^exponent, exactly. *)
+Record number := Number { mantissa : Z; exponent : Z }.
+Record numbers3 := Numbers3 { n1 : number; n2 : number; n3 : number }.
+Record stated_pose := Stated { r1 : numbers3; r2 : numbers3; r3 : numbers3; shift : numbers3 }.
+
+Inductive element :=
+  | Turn (axis : numbers3) (variable : nat) (multiplier offset : number)
+  | Slide (axis : numbers3) (variable : nat) (multiplier offset : number).
+
+(** Frame 0 is the world; the list of a world's frames begins with frame 1. *)
+Record frame := Frame { parent : nat; origin : stated_pose; elements : list element }.
+
+Inductive geometry :=
+  | MeshSurface (triangles : list (numbers3 * numbers3 * numbers3))
+  | Boxes (cells : list (numbers3 * numbers3))            (* centre, half sizes *)
+  | Box (sizes : numbers3)
+  | Sphere (radius : number)
+  | Capsule (radius length : number)
+  | Ellipsoid (semiaxes : numbers3)
+  | Cylinder (radius length : number)
+  | Cone (radius length : number)
+  | Hull (points : list numbers3).
+
+Inductive role := link | carried | obstacle.
+Record body := Body {
+  body_role : role; body_name : string; body_frame : nat; body_place : stated_pose; body_geometry : geometry }.
+
+Record world := World {
+  frames : list frame;
+  bodies : list body;
+  margins : list (string * number);
+  pair_margins : list (string * string * number);
+  unchecked : list (string * string) }.                   (* names of pairs that are not checked *)
+
+(** A piece has a polynomial for each variable, by its coefficients of 1, t, t^2, ..., and pairs of bodies, the lower
+    number first, that are ignored up to a time. *)
+Record piece := Piece { polynomials : list (list number); ignored : list (nat * nat * number) }.
+Record motion := Motion {
+  general_margin : number; added_margin : number;
+  scope_self : bool; scope_scene : bool;
+  until : number;                                         (* of the last piece *)
+  pieces : list piece }.
+
+(** ** What they mean *)
+
+Definition real (x : number) : R := IZR (mantissa x) * powerRZ 2 (exponent x).
+Definition point (p : numbers3) : vec := Vec (real (n1 p)) (real (n2 p)) (real (n3 p)).
+
+(** The value of a variable at time t. *)
+Fixpoint polynomial (coefficients : list number) (t : R) : R :=
+  match coefficients with [] => 0 | c :: rest => real c + t * polynomial rest t end.
+Definition value (p : piece) (t : R) (variable : nat) : R := polynomial (nth variable (polynomials p) []) t.
+
+(** Rodrigues' formula: the turn by [angle] about the unit vector [k]. *)
+Definition turn (k : vec) (angle : R) (x : vec) : vec :=
+  add (add (scale (cos angle) x) (scale (sin angle) (cross k x))) (scale ((1 - cos angle) * dot k x) k).
+
+(** The unit vectors that an axis may mean: exactly the one along it, if two of its numbers are 0; else all that are
+    off it by 2^-50 at most. *)
+Definition coordinate_axis (a : vec) :=
+  (vx a = 0 /\ vy a = 0) \/ (vx a = 0 /\ vz a = 0) \/ (vy a = 0 /\ vz a = 0).
+Definition axis_means (a k : vec) :=
+  dot k k = 1 /\ near (/ 2 ^ 50) k (scale (/ norm a) a) /\ (coordinate_axis a -> k = scale (/ norm a) a).
+
+(** The maps (of points of the element's own frame) that an element may mean where the variables have the values q. *)
+Inductive element_map (q : nat -> R) : element -> (vec -> vec) -> Prop :=
+  | turn_map a k v m c : axis_means (point a) k ->
+      element_map q (Turn a v m c) (turn k (real m * q v + real c))
+  | slide_map a k v m c : axis_means (point a) k ->
+      element_map q (Slide a v m c) (fun x => add x (scale (real m * q v + real c) k)).
+
+Inductive elements_map (q : nat -> R) : list element -> (vec -> vec) -> Prop :=
+  | no_element : elements_map q [] (fun x => x)
+  | first_element e es E M : element_map q e E -> elements_map q es M ->
+      elements_map q (e :: es) (fun x => E (M x)).
+
+(** The maps that twelve numbers may mean: a rotation within 2^-49 of the nine, and exactly the translation. *)
+Inductive pose_map (p : stated_pose) : (vec -> vec) -> Prop :=
+  | pose_means m : rotation m ->
+      near (/ 2 ^ 49) (row1 m) (point (r1 p)) -> near (/ 2 ^ 49) (row2 m) (point (r2 p)) ->
+      near (/ 2 ^ 49) (row3 m) (point (r3 p)) ->
+      pose_map p (fun x => add (apply m x) (point (shift p))).
+
+(** [P i x] is where the point x of frame i stands in the world. *)
+Definition frames_at (w : world) (q : nat -> R) (P : nat -> vec -> vec) : Prop :=
+  (forall x, P O x = x) /\
+  (forall i f, nth_error (frames w) i = Some f ->
+     exists O M, pose_map (origin f) O /\ elements_map q (elements f) M /\
+       forall x, P (S i) x = P (parent f) (O (M x))).
+
+(** ** Geometry *)
+
+Inductive in_hull (corners : list vec) : vec -> Prop :=
+  | corner p : In p corners -> in_hull corners p
+  | between x y l : in_hull corners x -> in_hull corners y -> 0 <= l <= 1 ->
+      in_hull corners (add (scale l x) (scale (1 - l) y)).
+
+Definition in_box (half : vec) (x : vec) :=
+  Rabs (vx x) <= vx half /\ Rabs (vy x) <= vy half /\ Rabs (vz x) <= vz half.
+
+Definition inside (g : geometry) (x : vec) : Prop :=
+  match g with
+  | MeshSurface triangles =>
+      exists a b c, In (a, b, c) triangles /\ in_hull [point a; point b; point c] x
+  | Boxes cells => exists centre half, In (centre, half) cells /\ in_box (point half) (sub x (point centre))
+  | Box sizes => in_box (scale (/ 2) (point sizes)) x
+  | Sphere r => norm x <= real r
+  | Capsule r l => exists z, - real l / 2 <= z <= real l / 2 /\ norm (sub x (Vec 0 0 z)) <= real r
+  | Ellipsoid a => exists u, norm u <= 1 /\
+      x = Vec (real (n1 a) * vx u) (real (n2 a) * vy u) (real (n3 a) * vz u)
+  | Cylinder r l => norm (Vec (vx x) (vy x) 0) <= real r /\ - real l / 2 <= vz x <= real l / 2
+  | Cone r l => exists h, 0 <= h <= 1 /\                  (* h: part of the way from the base to the apex *)
+      norm (Vec (vx x) (vy x) 0) <= (1 - h) * real r /\ vz x = h * real l - real l / 2
+  | Hull points => in_hull (map point points) x
+  end.
+
+(** y is where a point of body b stands in the world. *)
+Definition occupies (P : nat -> vec -> vec) (b : body) (B : vec -> vec) (y : vec) :=
+  exists x, inside (body_geometry b) x /\ y = P (body_frame b) (B x).
+
+(** ** Pairs and margins *)
+
+Definition is_obstacle (b : body) := match body_role b with obstacle => true | _ => false end.
+Definition same_names (x y a b : string) :=
+  (String.eqb x a && String.eqb y b) || (String.eqb x b && String.eqb y a).
+
+(** All pairs are checked but two bodies of one frame, two obstacles, listed ones, and those out of the scope. *)
+Definition checked (w : world) (m : motion) (a b : body) : bool :=
+  negb (Nat.eqb (body_frame a) (body_frame b)) &&
+  negb (is_obstacle a && is_obstacle b) &&
+  negb (existsb (fun u => same_names (fst u) (snd u) (body_name a) (body_name b)) (unchecked w)) &&
+  (if is_obstacle a || is_obstacle b then scope_scene m else scope_self m).
+
+Definition own_margin (w : world) (a : body) : option number :=
+  option_map snd (find (fun e => String.eqb (fst e) (body_name a)) (margins w)).
+Definition pair_margin (w : world) (a b : body) : option number :=
+  option_map snd
+    (find (fun e => same_names (fst (fst e)) (snd (fst e)) (body_name a) (body_name b)) (pair_margins w)).
+
+(** The pair's own, else the largest of the bodies' own, else the motion's; and what is added. *)
+Definition margin (w : world) (m : motion) (a b : body) : R :=
+  real (added_margin m) +
+  match pair_margin w a b, own_margin w a, own_margin w b with
+  | Some x, _, _ => real x
+  | None, Some x, Some y => Rmax (real x) (real y)
+  | None, Some x, None => real x
+  | None, None, Some y => real y
+  | None, None, None => real (general_margin m)
+  end.
+
+(** ** The claim *)
+
+(** The claim is about something: whatever the values of the variables, frames and bodies can stand as the world says. *)
+Definition meaningful (w : world) :=
+  (forall q, exists P, frames_at w q P) /\ (forall b, In b (bodies w) -> exists B, pose_map (body_place b) B).
+
+(** At values q of the variables, whatever the rotations and axes mean, the points of a and b keep their distance. *)
+Definition apart (w : world) (m : motion) (q : nat -> R) (a b : body) : Prop :=
+  forall P A B, frames_at w q P -> pose_map (body_place a) A -> pose_map (body_place b) B ->
+  forall x y, occupies P a A x -> occupies P b B y -> norm (sub x y) > margin w m a b.
+
+(** When a piece's part of the claim ends: the last one at [until], the others at 1. *)
+Definition ends (m : motion) (k : nat) : R :=
+  if Nat.eqb (S k) (length (pieces m)) then real (until m) else 1.
+
+(** A piece begins where the one before ends: each turn and slide differs by 2^-29 and 2^-39 of it (2^-20 at most). *)
+Definition joined (w : world) (p p' : piece) : Prop :=
+  forall f e, In f (frames w) -> In e (elements f) ->
+  let '(v, m) := match e with Turn _ v m _ => (v, m) | Slide _ v m _ => (v, m) end in
+  let x := real m * value p 1 v in
+  Rabs (x - real m * value p' 0 v) <= / 2 ^ 29 + Rmin (Rabs x / 2 ^ 39) (/ 2 ^ 20).
+
+Definition claim (w : world) (m : motion) : Prop :=
+  meaningful w /\
+  (forall k p p', nth_error (pieces m) k = Some p -> nth_error (pieces m) (S k) = Some p' -> joined w p p') /\
+  forall k p, nth_error (pieces m) k = Some p ->
+  forall i j a b, (i < j)%nat -> nth_error (bodies w) i = Some a -> nth_error (bodies w) j = Some b ->
+  checked w m a b = true ->
+  forall t, 0 <= t <= ends m k -> (forall u, In (i, j, u) (ignored p) -> real u < t) ->
+  apart w m (value p t) a b.

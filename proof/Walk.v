@@ -1,0 +1,349 @@
+(* SPDX-License-Identifier: BSD-3-Clause *)
+(** * The walk over a proof, and the theorem
+
+    As verify/proof.cpp: a node is about a task, that is pieces of a body A, a list of partners and an interval of time;
+    TIME, PARTNERS, OWN and OTHER cut their task in two parts that cover it. *)
+From Coq Require Import Reals ZArith Lia Lra String Bool List.
+From FclArtic Require Import Statement Numbers Trig Frames Enclose Meaning Leaf.
+Import ListNotations.
+Open Scope R_scope.
+
+(** ** Proofs *)
+
+(** In which frame a direction is constant: the world, that of A, that of the first partner. *)
+Inductive place := InWorld | InOwn | InPartners.
+
+Inductive node :=
+  | Sep (where_ : place) (x y z : Z)
+  | Time (first second : node)
+  | Partners (count : nat) (first second : node)
+  | Own (count : nat) (first second : node)
+  | Other (count : nat) (first second : node).
+
+(** How often a leaf halves time. *)
+Definition leaf_halvings : nat := 14.
+
+Definition frame_of (where_ : place) (A : sbody) (ps : list partner) : nat :=
+  match where_, ps with
+  | InWorld, _ => O
+  | InOwn, _ => sb_frame A
+  | InPartners, p :: _ => sb_frame (p_body p)
+  | InPartners, [] => O
+  end.
+
+(** Whether both parts of a list are there: the format asks for it, the proof below does not. *)
+Definition cuts (count size : nat) : bool := Nat.ltb 0 count && Nat.ltb count size.
+
+Section Check.
+Variable sfs : list sframe.
+Variable q : spiece.
+Variable A : sbody.
+
+Fixpoint check (nd : node) (os : list outline) (ps : list partner) (a b : Z) : bool :=
+  match nd with
+  | Sep where_ x y z =>
+      let i := frame_of where_ A ps in
+      let n := Direction i x y z in
+      Nat.leb i (length sfs) &&
+      separated leaf_halvings sfs q A os n (filter (fun p => Z.leb (p_from p) a) ps) a b &&
+      forallb (fun p => Z.leb (p_from p) a || Z.leb b (p_from p) ||
+                        separated leaf_halvings sfs q A os n [p] (p_from p) b) ps
+  | Time l r => let c := ((a + b) / 2)%Z in check l os ps a c && check r os ps c b
+  | Partners k l r => cuts k (length ps) && (check l os (firstn k ps) a b && check r os (skipn k ps) a b)
+  | Own k l r => cuts k (length os) && (check l (firstn k os) ps a b && check r (skipn k os) ps a b)
+  | Other k l r =>
+      match ps with
+      | [p] =>
+          cuts k (length (p_pieces p)) &&
+          (check l os [Partner (p_body p) (firstn k (p_pieces p)) (p_margin p) (p_from p)] a b &&
+          check r os [Partner (p_body p) (skipn k (p_pieces p)) (p_margin p) (p_from p)] a b)
+      | _ => false
+      end
+  end.
+End Check.
+
+(** ** Bodies, pairs, pieces of the motion *)
+
+Record prepared := Prepared { pr_number : nat; pr_body : body; pr_sbody : sbody; pr_pieces : list outline }.
+Definition prepare (i : nat) (b : body) : prepared :=
+  Prepared i b (Sbody (body_frame b) (placed (body_place b))) (outlines (body_geometry b)).
+Fixpoint prepare_all (i : nat) (bs : list body) : list prepared :=
+  match bs with [] => [] | b :: rest => prepare i b :: prepare_all (S i) rest end.
+
+(** Until when a pair is ignored; before all times, if it is not. *)
+Definition ignored_until (p : piece) (i j : nat) : Z :=
+  fold_right (fun e latest => let '(k, l, u) := e in
+                if Nat.eqb k i && Nat.eqb l j then Z.max (number_down u) latest else latest) (- one)%Z (ignored p).
+
+Definition margin_up (w : world) (m : motion) (a b : body) : Z :=
+  (number_up (added_margin m) +
+   match pair_margin w a b, own_margin w a, own_margin w b with
+   | Some x, _, _ => number_up x
+   | None, Some x, Some y => Z.max (number_up x) (number_up y)
+   | None, Some x, None => number_up x
+   | None, None, Some y => number_up y
+   | None, None, None => number_up (general_margin m)
+   end)%Z.
+
+Definition partner_of (w : world) (m : motion) (p : piece) (b a : prepared) : partner :=
+  Partner (pr_sbody a) (pr_pieces a) (margin_up w m (pr_body a) (pr_body b))
+    (ignored_until p (pr_number a) (pr_number b)).
+
+(** One root for each body that has partners before it; the nodes that are left over. *)
+Fixpoint check_bodies (w : world) (m : motion) (sfs : list sframe) (p : piece) (until_up : Z)
+    (before rest : list prepared) (nodes : list node) : option (list node) :=
+  match rest with
+  | [] => Some nodes
+  | b :: rest' =>
+      match filter (fun a => checked w m (pr_body a) (pr_body b)) before with
+      | [] => check_bodies w m sfs p until_up (before ++ [b]) rest' nodes
+      | partners =>
+          match nodes with
+          | [] => None
+          | nd :: nodes' =>
+              if check sfs (spiece_of p) (pr_sbody b) nd (pr_pieces b) (map (partner_of w m p b) partners) 0 until_up
+              then check_bodies w m sfs p until_up (before ++ [b]) rest' nodes'
+              else None
+          end
+      end
+  end.
+
+Fixpoint check_pieces (w : world) (m : motion) (sfs : list sframe) (bs : list prepared) (ps : list piece)
+    (nodes : list node) : option (list node) :=
+  match ps with
+  | [] => Some nodes
+  | p :: rest =>
+      let until_up := match rest with [] => number_up (until m) | _ => one end in
+      match check_bodies w m sfs p until_up [] bs nodes with
+      | Some nodes' => check_pieces w m sfs bs rest nodes'
+      | None => None
+      end
+  end.
+
+(** Whether pieces join; 2^35, 2^44: 2^-29 and 2^-20 in units. *)
+Definition element_joins (p p' : piece) (e : element) : bool :=
+  let '(v, m) := match e with Turn _ v m _ => (v, m) | Slide _ v m _ => (v, m) end in
+  let x := tm_mul (tm_number m) (value_tm p one v) in
+  let y := tm_mul (tm_number m) (value_tm p' 0 v) in
+  Z.leb (bound (tm_sub x y)) (2 ^ 35 + Z.min (Z.shiftr (Z.abs (c0 x) - rem x) 39) (2 ^ 44)).
+Fixpoint pieces_join (w : world) (ps : list piece) : bool :=
+  match ps with
+  | p :: (p' :: _) as rest =>
+      forallb (fun f => forallb (element_joins p p') (elements f)) (frames w) && pieces_join w rest
+  | _ => true
+  end.
+
+Fixpoint parents_ok (i : nat) (fs : list frame) : bool :=
+  match fs with [] => true | f :: rest => Nat.leb (parent f) i && parents_ok (S i) rest end.
+Definition is_well_formed (w : world) : bool :=
+  parents_ok 0 (frames w) && forallb (fun b => Nat.leb (body_frame b) (length (frames w))) (bodies w).
+
+Definition is_meaningful (w : world) : bool :=
+  forallb frame_means (frames w) && forallb (fun b => has_rotation (body_place b)) (bodies w).
+
+Definition accepts (w : world) (m : motion) (nodes : list node) : bool :=
+  is_well_formed w && is_meaningful w && pieces_join w (pieces m) &&
+  match check_pieces w m (map sframe_of (frames w)) (prepare_all 0 (bodies w)) (pieces m) nodes with
+  | Some [] => true
+  | _ => false
+  end.
+
+(** ** Soundness *)
+
+Section Sound.
+Variable w : world.
+Hypothesis WF : well_formed w.
+Variable m : motion.
+Let sfs := map sframe_of (frames w).
+
+Lemma check_ok pc A nd : forall os ps a b, check sfs (spiece_of pc) A nd os ps a b = true ->
+  forall t P p, V a <= t <= V b -> frames_at w (value pc t) P -> In p ps -> V (p_from p) < t -> keeps P A os p.
+Proof.
+  induction nd as [wh x y z | l IHl r IHr | k l IHl r IHr | k l IHl r IHr | k l IHl r IHr];
+    intros os ps a b H t P p Ht HP Ip Hp; cbn [check] in H.
+  - rewrite !andb_true_iff in H. destruct H as [[L S1] S2]. apply Nat.leb_le in L.
+    assert (D : (d_frame (Direction (frame_of wh A ps) x y z) <= length (frames w))%nat).
+    { cbn [d_frame]. unfold sfs in L. rewrite map_length in L. exact L. }
+    rewrite forallb_forall in S2. specialize (S2 p Ip). rewrite !orb_true_iff in S2.
+    destruct S2 as [[E|E]|E]; [| apply Z.leb_le, V_le in E; lra |].
+    + eapply separated_ok; [exact WF | exact D | exact S1 | exact Ht | exact HP|]. apply filter_In. split; assumption.
+    + eapply separated_ok; [exact WF | exact D | exact E | | exact HP | left; reflexivity]. lra.
+  - apply andb_true_iff in H. destruct H as [H1 H2].
+    destruct (Rle_lt_dec t (V ((a + b) / 2))) as [L|G]; [eapply IHl; [exact H1 | | exact HP | exact Ip | exact Hp]
+                                                       | eapply IHr; [exact H2 | | exact HP | exact Ip | exact Hp]]; lra.
+  - rewrite !andb_true_iff in H. destruct H as [_ [H1 H2]]. rewrite <- (firstn_skipn k ps) in Ip. apply in_app_or in Ip.
+    destruct Ip as [I|I]; [eapply IHl | eapply IHr]; eassumption.
+  - rewrite !andb_true_iff in H. destruct H as [_ [H1 H2]]. intros F G HF HG x y o o' Io Co Io' Co'.
+    rewrite <- (firstn_skipn k os) in Io. apply in_app_or in Io.
+    destruct Io as [I|I]; [eapply IHl | eapply IHr]; eassumption.
+  - destruct ps as [|p' [|]]; try discriminate. rewrite !andb_true_iff in H. destruct H as [_ [H1 H2]].
+    destruct Ip as [->|[]]. intros F G HF HG x y o o' Io Co Io' Co'.
+    rewrite <- (firstn_skipn k (p_pieces p)) in Io'. apply in_app_or in Io'. destruct Io' as [I|I].
+    + exact (IHl _ _ _ _ H1 t P _ Ht HP (or_introl eq_refl) Hp F G HF HG x y o o' Io Co I Co').
+    + exact (IHr _ _ _ _ H2 t P _ Ht HP (or_introl eq_refl) Hp F G HF HG x y o o' Io Co I Co').
+Qed.
+
+Lemma margin_up_ok a b : margin w m a b <= V (margin_up w m a b).
+Proof.
+  unfold margin, margin_up. rewrite V_add. apply Rplus_le_compat; [apply number_up_ok|].
+  destruct (pair_margin w a b); [apply number_up_ok|].
+  destruct (own_margin w a) as [x|], (own_margin w b) as [y|]; try apply number_up_ok.
+  destruct (V_max (number_up x) (number_up y)) as [L1 L2].
+  pose proof (number_up_ok x). pose proof (number_up_ok y). apply Rmax_lub; lra.
+Qed.
+
+Lemma ignored_until_ok p i j t : 0 <= t -> (forall u, In (i, j, u) (ignored p) -> real u < t) ->
+  V (ignored_until p i j) < t.
+Proof.
+  intros H0 H. unfold ignored_until. induction (ignored p) as [|[[k l] u] rest IH]; cbn [fold_right].
+  - rewrite V_opp, V_one. lra.
+  - specialize (IH (fun v I => H v (or_intror I))).
+    destruct (Nat.eqb_spec k i) as [->|_]; [|exact IH]. destruct (Nat.eqb_spec l j) as [->|_]; [|exact IH].
+    cbn [andb]. pose proof (H u (or_introl eq_refl)). pose proof (number_down_ok u).
+    destruct (Z.max_spec (number_down u) (fold_right (fun e latest => let '(k, l, u0) := e in
+      if Nat.eqb k i && Nat.eqb l j then Z.max (number_down u0) latest else latest) (- one)%Z rest)) as [[_ ->]|[_ ->]];
+      [exact IH | lra].
+Qed.
+
+(** What one root shows. *)
+Lemma root_ok pc u nd i j (a b : body) (before : list prepared) t : In (prepare i a) before -> checked w m a b = true ->
+  check sfs (spiece_of pc) (pr_sbody (prepare j b)) nd (pr_pieces (prepare j b))
+    (map (partner_of w m pc (prepare j b)) (filter (fun p => checked w m (pr_body p) b) before)) 0 u = true ->
+  0 <= t <= V u -> (forall v, In (i, j, v) (ignored pc) -> real v < t) -> apart w m (value pc t) a b.
+Proof.
+  intros Ia C H Ht HI P A B HP HA HB x y (x' & Ix & ->) (y' & Iy & ->).
+  assert (Ip : In (partner_of w m pc (prepare j b) (prepare i a))
+    (map (partner_of w m pc (prepare j b)) (filter (fun p => checked w m (pr_body p) b) before))).
+  { apply in_map. apply filter_In. split; [exact Ia | exact C]. }
+  pose proof (ignored_until_ok pc i j t (proj1 Ht) HI) as HF.
+  rewrite <- V_0 in Ht. pose proof (check_ok pc _ nd _ _ _ _ H t P _ Ht HP Ip HF) as K.
+  destruct (outlines_cover _ _ Ix) as (o & Io & Co). destruct (outlines_cover _ _ Iy) as (o' & Io' & Co').
+  assert (N : norm (sub (P (body_frame a) (A x')) (P (body_frame b) (B y'))) =
+              norm (sub (P (body_frame b) (B y')) (P (body_frame a) (A x')))).
+  { unfold norm. f_equal. unfold dot, sub, add, scale; cbn [vx vy vz]. ring. }
+  rewrite N. apply Rle_lt_trans with (V (margin_up w m a b)); [apply margin_up_ok|].
+  exact (K B A (fun s => placed_ok s _ _ HB) (fun s => placed_ok s _ _ HA) y' x' o' o Io' Co' Io Co).
+Qed.
+
+(** All pairs of [rest], whose numbers begin with n, with what stands before them. *)
+Lemma check_bodies_ok pc u rest : forall n before nodes left,
+  check_bodies w m sfs pc u before (prepare_all n rest) nodes = Some left ->
+  forall k b i a t, nth_error rest k = Some b ->
+  In (prepare i a) before \/ (exists k', (k' < k)%nat /\ nth_error rest k' = Some a /\ i = (n + k')%nat) ->
+  checked w m a b = true -> 0 <= t <= V u -> (forall v, In (i, (n + k)%nat, v) (ignored pc) -> real v < t) ->
+  apart w m (value pc t) a b.
+Proof.
+  induction rest as [|c rest IH]; intros n before nodes left H k b i a t Nb Ia C Ht HI.
+  - destruct k; discriminate.
+  - cbn [prepare_all check_bodies] in H.
+    set (found := filter (fun p => checked w m (pr_body p) (pr_body (prepare n c))) before) in *.
+    destruct k as [|k].
+    + cbn in Nb. injection Nb as ->. destruct Ia as [Ia|(k' & L & _)]; [|lia]. rewrite Nat.add_0_r in HI.
+      destruct found as [|p ps] eqn:F.
+      * assert (I : In (prepare i a) found) by (apply filter_In; split; [exact Ia | exact C]). rewrite F in I. destruct I.
+      * destruct nodes as [|nd nodes']; [discriminate|].
+        destruct (check sfs _ _ nd _ _ 0 u) eqn:K; [|discriminate].
+        apply (root_ok pc u nd i n a b before t Ia C); [|exact Ht | exact HI].
+        change (filter (fun p => checked w m (pr_body p) b) before) with found. rewrite F. exact K.
+    + cbn [nth_error] in Nb.
+      assert (LATER : forall nodes', check_bodies w m sfs pc u (before ++ [prepare n c])
+        (prepare_all (S n) rest) nodes' = Some left -> apart w m (value pc t) a b).
+      { intros nodes' H'. replace (n + S k)%nat with (S n + k)%nat in HI by lia.
+        apply (IH _ _ _ _ H' k b i a t Nb); [|exact C | exact Ht | exact HI].
+        destruct Ia as [Ia|(k' & L & Na & ->)]; [left; apply in_or_app; left; exact Ia|].
+        destruct k' as [|k'].
+        - cbn in Na. injection Na as ->. left. apply in_or_app. right. left. rewrite Nat.add_0_r. reflexivity.
+        - right. exists k'. split; [lia|]. split; [exact Na | lia]. }
+      destruct found as [|p ps]; [exact (LATER _ H)|].
+      destruct nodes as [|nd nodes']; [discriminate|].
+      destruct (check sfs _ _ nd _ _ 0 u); [|discriminate]. exact (LATER _ H).
+Qed.
+
+Lemma check_pieces_ok ps : forall nodes left,
+  check_pieces w m sfs (prepare_all 0 (bodies w)) ps nodes = Some left ->
+  forall k p, nth_error ps k = Some p ->
+  exists nodes' left', check_bodies w m sfs p
+    (if Nat.eqb (S k) (length ps) then number_up (until m) else one) [] (prepare_all 0 (bodies w)) nodes' = Some left'.
+Proof.
+  induction ps as [|p0 rest IH]; intros nodes left H k p N; [destruct k; discriminate|]. cbn [check_pieces] in H.
+  destruct (check_bodies w m sfs p0 _ [] _ nodes) as [nodes1|] eqn:B; [|discriminate].
+  destruct k as [|k].
+  - cbn in N. injection N as <-. exists nodes, nodes1. rewrite <- B. f_equal. destruct rest; reflexivity.
+  - cbn [nth_error] in N. destruct (IH _ _ H k p N) as (n' & l' & E). exists n', l'. exact E.
+Qed.
+
+Lemma element_joins_ok p p' e : element_joins p p' e = true ->
+  let '(v, mm) := match e with Turn _ v m _ => (v, m) | Slide _ v m _ => (v, m) end in
+  let x := real mm * value p 1 v in
+  Rabs (x - real mm * value p' 0 v) <= / 2 ^ 29 + Rmin (Rabs x / 2 ^ 39) (/ 2 ^ 20).
+Proof.
+  unfold element_joins. destruct (match e with Turn _ v m _ => (v, m) | Slide _ v m _ => (v, m) end) as [v mm].
+  intros H. apply Z.leb_le, V_le in H. set (xm := tm_mul (tm_number mm) (value_tm p one v)) in *.
+  assert (Z1 : Rabs 0 <= 1) by (rewrite Rabs_R0; lra).
+  pose proof (value_ok p one v) as H1. rewrite V_one in H1. pose proof (value_ok p' 0 v) as H0. rewrite V_0 in H0.
+  pose proof (holds_mul _ _ 0 _ _ Z1 (holds_number 0 mm) H1) as HX. fold xm in HX.
+  pose proof (holds_mul _ _ 0 _ _ Z1 (holds_number 0 mm) H0) as HY.
+  pose proof (bound_ge _ 0 _ Z1 (holds_sub _ _ _ _ _ HX HY)) as B.
+  set (x := real mm * value p 1 v) in *.
+  assert (X : V (Z.abs (c0 xm) - rem xm) <= Rabs x).
+  { rewrite V_sub, V_abs. unfold holds, poly in HX.
+    replace (V (c0 xm) + V (c1 xm) * 0 + V (c2 xm) * (0 * 0)) with (V (c0 xm)) in HX by ring.
+    pose proof (Rabs_triang x (V (c0 xm) - x)) as T. replace (x + (V (c0 xm) - x)) with (V (c0 xm)) in T by ring.
+    rewrite <- Rabs_Ropp in HX. replace (- (x - V (c0 xm))) with (V (c0 xm) - x) in HX by ring. lra. }
+  set (k := (Z.abs (c0 xm) - rem xm)%Z) in *.
+  pose proof (shiftr_err k 39 ltac:(lia)) as S. rewrite two_power in S by lia.
+  replace (powerRZ 2 39) with (2 ^ 39) in S by (change 39%Z with (Z.of_nat 39); rewrite pow_powerRZ; reflexivity).
+  rewrite V_add in H. 
+  assert (E29 : V (2 ^ 35) = / 2 ^ 29) by (symmetry; exact (power_neg 29 ltac:(lia))). rewrite E29 in H.
+  assert (M : V (Z.min (Z.shiftr k 39) (2 ^ 44)) <= Rmin (Rabs x / 2 ^ 39) (/ 2 ^ 20)).
+  { apply Rmin_glb.
+    - apply Rle_trans with (V (Z.shiftr k 39)); [apply V_le; lia|].
+      apply Rle_trans with (V k / 2 ^ 39); [lra|]. apply Rmult_le_compat_r; [|exact X].
+      left. apply Rinv_0_lt_compat, pow_lt. lra.
+    - apply Rle_trans with (V (2 ^ 44)); [apply V_le; lia|]. apply Req_le. symmetry. apply (power_neg 20). lia. }
+  cbv zeta. lra.
+Qed.
+
+Lemma pieces_join_ok ps : pieces_join w ps = true ->
+  forall k p p', nth_error ps k = Some p -> nth_error ps (S k) = Some p' -> joined w p p'.
+Proof.
+  induction ps as [|p0 rest IH]; intros H k p p' Np Np'; [destruct k; discriminate|].
+  destruct rest as [|p1 rest]; [destruct k as [|[|]]; discriminate|].
+  cbn [pieces_join] in H. apply andb_true_iff in H. destruct H as [H1 H2]. destruct k as [|k].
+  - cbn in Np, Np'. injection Np as <-. injection Np' as <-. intros f e If Ie.
+    rewrite forallb_forall in H1. specialize (H1 f If). rewrite forallb_forall in H1.
+    exact (element_joins_ok p0 p1 e (H1 e Ie)).
+  - exact (IH H2 k p p' Np Np').
+Qed.
+End Sound.
+
+Lemma parents_ok_spec fs : forall i, parents_ok i fs = true ->
+  forall k f, nth_error fs k = Some f -> (parent f <= i + k)%nat.
+Proof.
+  induction fs as [|f0 fs IH]; intros i H k f N; [destruct k; discriminate|]. cbn [parents_ok] in H.
+  apply andb_true_iff in H. destruct H as [H1 H2]. apply Nat.leb_le in H1. destruct k as [|k].
+  - injection N as <-. lia.
+  - specialize (IH _ H2 k f N). lia.
+Qed.
+
+Theorem accepts_sound w m nodes : accepts w m nodes = true -> claim w m.
+Proof.
+  unfold accepts. rewrite !andb_true_iff. intros [[[HW HM] HJ] H].
+  assert (WF : well_formed w).
+  { apply andb_true_iff in HW. destruct HW as [H1 H2]. split.
+    - intros i f N. exact (parents_ok_spec _ 0 H1 i f N).
+    - intros b I. rewrite forallb_forall in H2. apply Nat.leb_le, H2, I. }
+  split; [|split].
+  { apply andb_true_iff in HM. destruct HM as [M1 M2]. split.
+    - intros q. apply frames_exist; [apply WF | exact M1].
+    - intros b I. rewrite forallb_forall in M2. apply has_rotation_ok, M2, I. }
+  { apply pieces_join_ok. exact HJ. }
+  intros k p Np i j a b Hij Na Nb C t Ht HI.
+  destruct (check_pieces w m (map sframe_of (frames w)) (prepare_all 0 (bodies w)) (pieces m) nodes) as [left|] eqn:K;
+    [|discriminate]. clear H.
+  destruct (check_pieces_ok w m _ _ _ K k p Np) as (nodes' & left' & B).
+  apply (check_bodies_ok w WF m p _ (bodies w) 0 [] nodes' left' B j b i a t Nb); [|exact C | | exact HI].
+  - right. exists i. split; [exact Hij|]. split; [exact Na | reflexivity].
+  - destruct Ht as [H0 H1]. split; [exact H0|]. eapply Rle_trans; [exact H1|]. unfold ends.
+    destruct (Nat.eqb (S k) (length (pieces m))); [apply number_up_ok | rewrite V_one; lra].
+Qed.

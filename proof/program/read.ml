@@ -1,0 +1,451 @@
+(* SPDX-License-Identifier: BSD-3-Clause *)
+(* Reads worlds, motions and proofs as doc/CERTIFICATES.md describes them into the checker's types, strictly. Trusted:
+   the theorem is about what was read. What the checker does not know is refused by name. *)
+module Integer = Z
+open Checker
+module Z = Integer
+
+exception Bad_input of string
+exception Out_of_scope of string
+
+(* ---- Lines and words ---- *)
+
+type lines = { text : string; file : string; mutable at : int; mutable number : int; mutable words : string list }
+
+let fail l why = raise (Bad_input (Printf.sprintf "%s, line %d: %s" l.file l.number why))
+let scope l what = raise (Out_of_scope (Printf.sprintf "%s, line %d: %s" l.file l.number what))
+
+(* The next line that is no comment. *)
+let rec next l =
+  if l.at >= String.length l.text then false
+  else begin
+    let stop =
+      match String.index_from_opt l.text l.at '\n' with Some i -> i | None -> fail l "the last line has no end"
+    in
+    let line = String.sub l.text l.at (stop - l.at) in
+    l.at <- stop + 1;
+    l.number <- l.number + 1;
+    if line <> "" && line.[0] = '#' then next l
+    else begin
+      l.words <- String.split_on_char ' ' line;
+      if List.mem "" l.words then fail l "words are separated by one space";
+      true
+    end
+  end
+
+let start text file first =
+  let l = { text; file; at = 0; number = 0; words = [] } in
+  let head = first ^ "\n" in
+  let n = String.length head in
+  if String.length text < n || String.sub text 0 n <> head then fail l ("the first line is not '" ^ first ^ "'");
+  ignore (next l);
+  l
+
+let word l = match l.words with [] -> fail l "a word is missing" | w :: rest -> l.words <- rest; w
+let last l = if l.words <> [] then fail l "there are too many words"
+
+let integer l below =
+  let w = word l in
+  let n = String.length w in
+  if n = 0 || n > 9 || not (String.for_all (fun c -> c >= '0' && c <= '9') w) then fail l ("'" ^ w ^ "' is no number here");
+  let value = String.fold_left (fun v c -> (10 * v) + Char.code c - 48) 0 w in
+  if value >= below then fail l (Printf.sprintf "the number %d is not below %d" value below);
+  value
+
+(* A hexadecimal constant that is a double exactly, as an integer and an exponent of two. *)
+let number l =
+  let w = word l in
+  let wrong () = fail l ("'" ^ w ^ "' is no hexadecimal constant of a double") in
+  let negative = w.[0] = '-' in
+  let n = String.length w in
+  let i = ref (if negative then 1 else 0) in
+  if n < !i + 3 || w.[!i] <> '0' || w.[!i + 1] <> 'x' then wrong ();
+  i := !i + 2;
+  let mantissa = ref 0 and exponent = ref 0 and digits = ref 0 and point = ref false in
+  while !i < n && w.[!i] <> 'p' do
+    let c = w.[!i] in
+    incr i;
+    if c = '.' && not !point then point := true
+    else begin
+      let digit =
+        match c with '0' .. '9' -> Char.code c - 48 | 'a' .. 'f' -> Char.code c - 87 | _ -> wrong ()
+      in
+      incr digits;
+      if !digits > 15 then wrong ();
+      mantissa := (!mantissa lsl 4) lor digit;
+      if !point then exponent := !exponent - 4
+    end
+  done;
+  if !digits = 0 then wrong ();
+  if !i < n then begin
+    incr i;
+    let down = !i < n && w.[!i] = '-' in
+    if !i < n && (w.[!i] = '-' || w.[!i] = '+') then incr i;
+    if !i >= n || n - !i > 4 then wrong ();
+    let p = ref 0 in
+    while !i < n do
+      (match w.[!i] with '0' .. '9' as c -> p := (10 * !p) + Char.code c - 48 | _ -> wrong ());
+      incr i
+    done;
+    exponent := !exponent + if down then - !p else !p
+  end;
+  if !mantissa = 0 then { mantissa = Z.zero; exponent = Z.zero }
+  else begin
+    while !mantissa land 1 = 0 do
+      mantissa := !mantissa lsr 1;
+      incr exponent
+    done;
+    if !mantissa >= 1 lsl 53 || !exponent < -1074 then wrong ();
+    (* |x| <= 2^40, as for fcl_artic_verify *)
+    let bits = Z.numbits (Z.of_int !mantissa) + !exponent in
+    if bits > 41 || (bits = 41 && !mantissa <> 1) then fail l ("the number " ^ w ^ " is beyond 2^40");
+    { mantissa = Z.of_int (if negative then - !mantissa else !mantissa); exponent = Z.of_int !exponent }
+  end
+
+let not_negative l =
+  let x = number l in
+  if Z.sign x.mantissa < 0 then fail l "a number is negative";
+  x
+
+let hex_digit l c =
+  match c with
+  | '0' .. '9' -> Char.code c - 48
+  | 'a' .. 'f' -> Char.code c - 87
+  | 'A' .. 'F' -> Char.code c - 55
+  | _ -> fail l "a name has a % without two digits after it"
+
+let name l =
+  let w = word l in
+  let out = Buffer.create 16 in
+  let n = String.length w in
+  let rec go i =
+    if i < n then begin
+      let c = w.[i] in
+      if Char.code c < 33 || Char.code c > 126 then fail l "a name has a byte that is not escaped";
+      if c <> '%' then (Buffer.add_char out c; go (i + 1))
+      else begin
+        if i + 2 >= n then fail l "a name has a % without two digits after it";
+        let high = hex_digit l w.[i + 1] in
+        Buffer.add_char out (Char.chr ((16 * high) + hex_digit l w.[i + 2]));
+        go (i + 3)
+      end
+    end
+  in
+  go 0;
+  Buffer.contents out
+
+let three l f =
+  let n1 = f l in
+  let n2 = f l in
+  let n3 = f l in
+  { n1; n2; n3 }
+
+let pose l =
+  let r1 = three l number in
+  let r2 = three l number in
+  let r3 = three l number in
+  let shift = three l number in
+  { r1; r2; r3; shift }
+
+(* ---- The world ---- *)
+
+let rows l what row =
+  if not (next l && word l = what) then fail l ("'" ^ what ^ "' is missing");
+  let n = integer l 1_000_000_000 in
+  if n = 0 then fail l "the count is 0";
+  last l;
+  List.init n (fun _ ->
+      if not (next l) then fail l "a line is missing";
+      let x = row l in
+      last l;
+      x)
+
+let geometry l =
+  match word l with
+  | "mesh" ->
+      (match word l with
+      | "surface" -> ()
+      | "solid" -> scope l "mesh solid"
+      | _ -> fail l "a mesh is 'surface' or 'solid'");
+      last l;
+      let vertices = Array.of_list (rows l "vertices" (fun l -> three l number)) in
+      let used = Array.make (Array.length vertices) false in
+      let corner l =
+        let k = integer l (Array.length vertices) in
+        used.(k) <- true;
+        vertices.(k)
+      in
+      let triangles =
+        rows l "triangles" (fun l ->
+            let a = corner l in
+            let b = corner l in
+            let c = corner l in
+            ((a, b), c))
+      in
+      if Array.exists not used then fail l "a vertex of this mesh is that of no triangle";
+      MeshSurface triangles
+  | "boxes" ->
+      last l;
+      Boxes
+        (rows l "cells" (fun l ->
+             let centre = three l number in
+             let half = three l not_negative in
+             (centre, half)))
+  | "hull" ->
+      last l;
+      Hull (rows l "vertices" (fun l -> three l number))
+  | "box" ->
+      let sizes = three l not_negative in
+      last l;
+      Box sizes
+  | "sphere" ->
+      let r = not_negative l in
+      last l;
+      Sphere r
+  | "capsule" ->
+      let r = not_negative l in
+      let length = not_negative l in
+      last l;
+      Capsule (r, length)
+  | "ellipsoid" ->
+      let a = three l not_negative in
+      last l;
+      Ellipsoid a
+  | ("cylinder" | "cone") as kind ->
+      let r = not_negative l in
+      let length = not_negative l in
+      last l;
+      if kind = "cylinder" then Cylinder (r, length) else Cone (r, length)
+  | ("halfspace" | "plane") as kind -> scope l ("geometry " ^ kind)
+  | kind -> fail l ("there is no geometry '" ^ kind ^ "'")
+
+let world text =
+  let l = start text "world" "fcl_artic world 1" in
+  let variables = ref 0 and frames = ref [] and frame_count = ref 1 and geometries = ref [||] and bodies = ref [] in
+  let margins = ref [] and pair_margins = ref [] and unchecked = ref [] in
+  let same a b (c, d) = (a = c && b = d) || (a = d && b = c) in
+  while next l do
+    match word l with
+    | "variable" ->
+        ignore (name l);
+        last l;
+        incr variables
+    | "frame" ->
+        ignore (name l);
+        let parent = integer l !frame_count in
+        let origin = pose l in
+        last l;
+        frames := { parent; origin; elements = [] } :: !frames;
+        incr frame_count
+    | ("turn" | "slide") as kind -> (
+        match !frames with
+        | [] -> fail l "an element comes after its frame"
+        | f :: rest ->
+            let axis = three l number in
+            if List.for_all (fun x -> Z.sign x.mantissa = 0) [ axis.n1; axis.n2; axis.n3 ] then
+              fail l "an axis is the zero vector";
+            let v = integer l !variables in
+            let m = number l in
+            let c = number l in
+            last l;
+            let e = if kind = "turn" then Turn (axis, v, m, c) else Slide (axis, v, m, c) in
+            frames := { f with elements = f.elements @ [ e ] } :: rest)
+    | "rotate" -> scope l "rotate"
+    | "geometry" -> geometries := Array.append !geometries [| geometry l |]
+    | "body" ->
+        let body_role =
+          match word l with
+          | "link" -> Link
+          | "carried" -> Carried
+          | "obstacle" -> Obstacle
+          | _ -> fail l "a body's role is link, carried or obstacle"
+        in
+        let body_name = name l in
+        let body_frame = integer l !frame_count in
+        let body_geometry = !geometries.(integer l (Array.length !geometries)) in
+        let body_place = pose l in
+        last l;
+        bodies := { body_role; body_name; body_frame; body_place; body_geometry } :: !bodies
+    | "margin" ->
+        let a = name l in
+        if List.length l.words = 1 then begin
+          if List.mem_assoc a !margins then fail l "the name has a margin already";
+          margins := (a, not_negative l) :: !margins
+        end
+        else begin
+          let b = name l in
+          if List.exists (fun (p, _) -> same a b p) !pair_margins then fail l "the pair has a margin already";
+          pair_margins := ((a, b), not_negative l) :: !pair_margins
+        end;
+        last l
+    | "unchecked" ->
+        let reason = word l in
+        if not (List.mem reason [ "still"; "neighbours"; "allowed"; "touch-link" ]) then
+          fail l "the reason is still, neighbours, allowed or touch-link";
+        let a = name l in
+        let b = name l in
+        last l;
+        if List.exists (fun (_, p) -> same a b p) !unchecked then fail l "the pair is listed already";
+        unchecked := (reason, (a, b)) :: !unchecked
+    | kind -> fail l ("there is no item '" ^ kind ^ "'")
+  done;
+  ( { frames = List.rev !frames; bodies = List.rev !bodies; margins = !margins; pair_margins = !pair_margins;
+      unchecked = List.map snd !unchecked },
+    !variables )
+
+(* ---- The motion ---- *)
+
+(* A number in [0, 1]. *)
+let fraction l =
+  let x = not_negative l in
+  let bits = Z.numbits x.mantissa + Z.to_int x.exponent in
+  if Z.sign x.mantissa > 0 && (bits > 1 || (bits = 1 && not (Z.equal x.mantissa Z.one))) then
+    fail l "the time is in [0, 1]";
+  x
+
+(* The motion and the hash of its world. *)
+let motion text variables bodies =
+  let l = start text "motion" "fcl_artic motion 1" in
+  let world = ref None and margin = ref None and added = ref None and reach = ref None in
+  let duration = ref None and until = ref None in
+  let values = ref [] and left_out = ref [] in  (* of each piece, the last one first *)
+  let set item value =
+    if !item <> None then fail l "the item is there already";
+    if !values <> [] then fail l "the item comes before the first piece";
+    item := Some value
+  in
+  while next l do
+    (match word l with
+    | "world" -> set world (word l)
+    | "margin" -> set margin (not_negative l)
+    | "added" -> set added (not_negative l)
+    | "scope" ->
+        let words = l.words in
+        l.words <- [];
+        let known = List.sort_uniq compare words in
+        if words = [] || List.length known <> List.length words || List.exists (fun x -> x <> "self" && x <> "scene") known
+        then fail l "the scope is self, scene or both";
+        set reach words
+    | "duration" -> set duration (number l)
+    | "until" -> set until (fraction l)
+    | "piece" ->
+        values := Array.make variables [] :: !values;
+        left_out := ref [] :: !left_out
+    | "q" -> (
+        match !values with
+        | [] -> fail l "a 'piece' comes first"
+        | piece :: _ ->
+            let v = integer l variables in
+            if piece.(v) <> [] then fail l "a piece states a variable twice";
+            let n = List.length l.words in
+            if n < 1 || n > 6 then fail l "a polynomial has 1 to 6 coefficients";
+            piece.(v) <- List.init n (fun _ -> number l))
+    | "ignored" -> (
+        match !left_out with
+        | [] -> fail l "a 'piece' comes first"
+        | list :: _ ->
+            let a = integer l bodies in
+            let b = integer l bodies in
+            if a >= b then fail l "of an ignored pair the lower number comes first";
+            list := ((a, b), fraction l) :: !list)
+    | "orientation" -> scope l "orientation"
+    | kind -> fail l ("there is no item '" ^ kind ^ "'"));
+    last l
+  done;
+  let need what item = match !item with Some x -> x | None -> fail l (what ^ " is missing") in
+  let zero = { mantissa = Z.zero; exponent = Z.zero } in
+  let reach = need "scope" reach in
+  if !values = [] then fail l "there is no piece";
+  let pieces =
+    List.rev (List.map2 (fun q i -> { polynomials = Array.to_list q; ignored = !i }) !values !left_out)
+  in
+  ( { general_margin = need "margin" margin; added_margin = Option.value !added ~default:zero;
+      scope_self = List.mem "self" reach; scope_scene = List.mem "scene" reach; until = need "until" until; pieces },
+    need "world" world )
+
+(* ---- Certificates ---- *)
+
+type bytes = { data : string; mutable pos : int }
+
+let take b n =
+  if n < 0 || n > String.length b.data - b.pos then raise (Bad_input "the proof ends too early");
+  b.pos <- b.pos + n;
+  String.sub b.data (b.pos - n) n
+
+let byte b = Char.code (take b 1).[0]
+let little b n =
+  let s = take b n in
+  let v = ref 0 in
+  for k = n - 1 downto 0 do
+    v := (!v lsl 8) lor Char.code s.[k]
+  done;
+  !v
+let signed b n =
+  let v = little b n in
+  if v >= 1 lsl ((8 * n) - 1) then v - (1 lsl (8 * n)) else v
+
+let varint b =
+  let rec go shift value =
+    if shift > 28 then raise (Bad_input "a varint has more than 32 bits");
+    let x = byte b in
+    let value = value lor ((x land 127) lsl shift) in
+    if x land 128 <> 0 then go (shift + 7) value
+    else if value lsr 32 <> 0 || (x = 0 && shift > 0) then raise (Bad_input "a varint is not in its shortest form")
+    else value
+  in
+  go 0 0
+
+(* The motion and the proof of each record. *)
+let records file =
+  let b = { data = file; pos = 0 } in
+  let rec go acc =
+    if b.pos = String.length file then List.rev acc
+    else begin
+      if take b 4 <> "FAC2" then raise (Bad_input "a record does not begin with FAC2");
+      let motion = take b (little b 4) in
+      let proof = take b (little b 4) in
+      go ((motion, proof) :: acc)
+    end
+  in
+  go []
+
+let rec node b depth =
+  if depth > 400 then raise (Bad_input "the proof is more than 400 nodes deep");
+  let two f =
+    let first = node b (depth + 1) in
+    let second = node b (depth + 1) in
+    f first second
+  in
+  match byte b with
+  | k when k < 6 ->
+      let n = if k < 3 then 2 else 4 in
+      let entry () = Z.shift_left (Z.of_int (signed b n)) (65 - (8 * n)) in
+      let x = entry () in
+      let y = entry () in
+      let z = entry () in
+      Sep ((match k mod 3 with 0 -> InWorld | 1 -> InOwn | _ -> InPartners), x, y, z)
+  | 0x10 -> two (fun l r -> Time (l, r))
+  | 0x11 ->
+      let c = varint b in
+      two (fun l r -> Partners (c, l, r))
+  | 0x12 ->
+      let c = varint b in
+      two (fun l r -> Own (c, l, r))
+  | 0x13 ->
+      let c = varint b in
+      two (fun l r -> Other (c, l, r))
+  | 0x09 | 0x0a -> raise (Out_of_scope "the proof: WALL")
+  | 0x14 -> raise (Out_of_scope "the proof: SOLID")
+  | 0x20 -> raise (Out_of_scope "the proof: a contact")
+  | k -> raise (Bad_input (Printf.sprintf "there is no node of kind %d" k))
+
+(* The hash of the motion, the roots, and whether a contact comes after them, which is not looked at. *)
+let proof data =
+  let b = { data; pos = 0 } in
+  let hash = take b 32 in
+  let rec go acc =
+    if b.pos = String.length data then (hash, List.rev acc, false)
+    else if data.[b.pos] = '\x20' then (hash, List.rev acc, true)
+    else go (node b 0 :: acc)
+  in
+  go []
