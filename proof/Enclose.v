@@ -52,6 +52,13 @@ Proof.
   rewrite V_add. apply abs_in in H. lra.
 Qed.
 
+Definition number_down (x : number) : Z := let (c, r) := enclose x in (c - r)%Z.
+Lemma number_down_ok x : V (number_down x) <= real x.
+Proof.
+  unfold number_down. pose proof (enclose_ok x) as H. destruct (enclose x) as [c r]. cbn [fst snd] in H.
+  rewrite V_sub. apply abs_in in H. lra.
+Qed.
+
 Definition tm_point (p : numbers3) : tvec := Tvec (tm_number (n1 p)) (tm_number (n2 p)) (tm_number (n3 p)).
 Lemma holdsv_point s p : holdsv (tm_point p) s (point p).
 Proof. repeat split; apply holds_number. Qed.
@@ -261,8 +268,14 @@ Proof.
 Qed.
 
 Definition spiece := list (list tm).
-Definition spiece_of (p : piece) : spiece := map (map tm_number) p.
+Definition spiece_of (p : piece) : spiece := map (map tm_number) (polynomials p).
 Definition variables (p : spiece) (a b : Z) : list tm := let t := time_tm a b in map (fun cs => polynomial_tm cs t) p.
+
+(** The value of a variable at one time. *)
+Definition value_tm (p : piece) (t : Z) (v : nat) : tm :=
+  polynomial_tm (map tm_number (nth v (polynomials p) [])) (const t 0).
+Lemma value_ok p t v : holds (value_tm p t v) 0 (value p (V t) v).
+Proof. apply polynomial_ok; [rewrite Rabs_R0; lra | apply holds_exact]. Qed.
 
 Lemma variables_ok s p a b t v : Rabs s <= 1 -> holds (time_tm a b) s t ->
   holds (nth v (variables (spiece_of p) a b) tm_zero) s (value p t v).

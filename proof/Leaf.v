@@ -417,9 +417,10 @@ End AtOneTime.
 
 (** ** The leaf *)
 
-(** A body, prepared; a partner with some of its pieces, and the margin, rounded up. *)
+(** A body, prepared; a partner with some of its pieces, the margin, rounded up, and the time up to which the pair is
+    ignored, rounded down. *)
 Record sbody := Sbody { sb_frame : nat; sb_place : step }.
-Record partner := Partner { p_body : sbody; p_pieces : list outline; p_margin : Z }.
+Record partner := Partner { p_body : sbody; p_pieces : list outline; p_margin : Z; p_from : Z }.
 
 (** A direction that is constant in a frame: three integers in units of 2^-64. *)
 Record direction := Direction { d_frame : nat; d1 : Z; d2 : Z; d3 : Z }.

@@ -74,8 +74,9 @@ Record world := World {
   pair_margins : list (string * string * number);
   unchecked : list (string * string) }.                   (* names of pairs that are not checked *)
 
-(** A piece has a polynomial for each variable, by its coefficients of 1, t, t^2, ... *)
-Definition piece := list (list number).
+(** A piece has a polynomial for each variable, by its coefficients of 1, t, t^2, ..., and pairs of bodies, the lower
+    number first, that are ignored up to a time. *)
+Record piece := Piece { polynomials : list (list number); ignored : list (nat * nat * number) }.
 Record motion := Motion {
   general_margin : number; added_margin : number;
   scope_self : bool; scope_scene : bool;
@@ -90,7 +91,7 @@ Definition point (p : numbers3) : vec := Vec (real (n1 p)) (real (n2 p)) (real (
 (** The value of a variable at time t. *)
 Fixpoint polynomial (coefficients : list number) (t : R) : R :=
   match coefficients with [] => 0 | c :: rest => real c + t * polynomial rest t end.
-Definition value (p : piece) (t : R) (variable : nat) : R := polynomial (nth variable p []) t.
+Definition value (p : piece) (t : R) (variable : nat) : R := polynomial (nth variable (polynomials p) []) t.
 
 (** Rodrigues' formula: the turn by [angle] about the unit vector [k]. *)
 Definition turn (k : vec) (angle : R) (x : vec) : vec :=
@@ -204,9 +205,18 @@ Definition apart (w : world) (m : motion) (q : nat -> R) (a b : body) : Prop :=
 Definition ends (m : motion) (k : nat) : R :=
   if Nat.eqb (S k) (length (pieces m)) then real (until m) else 1.
 
+(** A piece begins where the one before ends: each turn and slide differs by 2^-29 and 2^-39 of it (2^-20 at most). *)
+Definition joined (w : world) (p p' : piece) : Prop :=
+  forall f e, In f (frames w) -> In e (elements f) ->
+  let '(v, m) := match e with Turn _ v m _ => (v, m) | Slide _ v m _ => (v, m) end in
+  let x := real m * value p 1 v in
+  Rabs (x - real m * value p' 0 v) <= / 2 ^ 29 + Rmin (Rabs x / 2 ^ 39) (/ 2 ^ 20).
+
 Definition claim (w : world) (m : motion) : Prop :=
   meaningful w /\
+  (forall k p p', nth_error (pieces m) k = Some p -> nth_error (pieces m) (S k) = Some p' -> joined w p p') /\
   forall k p, nth_error (pieces m) k = Some p ->
   forall i j a b, (i < j)%nat -> nth_error (bodies w) i = Some a -> nth_error (bodies w) j = Some b ->
   checked w m a b = true ->
-  forall t, 0 <= t <= ends m k -> apart w m (value p t) a b.
+  forall t, 0 <= t <= ends m k -> (forall u, In (i, j, u) (ignored p) -> real u < t) ->
+  apart w m (value p t) a b.

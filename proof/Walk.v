@@ -40,15 +40,19 @@ Fixpoint check (nd : node) (os : list outline) (ps : list partner) (a b : Z) : b
   match nd with
   | Sep where_ x y z =>
       let i := frame_of where_ A ps in
-      Nat.leb i (length sfs) && separated leaf_halvings sfs q A os (Direction i x y z) ps a b
+      let n := Direction i x y z in
+      Nat.leb i (length sfs) &&
+      separated leaf_halvings sfs q A os n (filter (fun p => Z.leb (p_from p) a) ps) a b &&
+      forallb (fun p => Z.leb (p_from p) a || Z.leb b (p_from p) ||
+                        separated leaf_halvings sfs q A os n [p] (p_from p) b) ps
   | Time l r => let c := ((a + b) / 2)%Z in check l os ps a c && check r os ps c b
   | Partners k l r => check l os (firstn k ps) a b && check r os (skipn k ps) a b
   | Own k l r => check l (firstn k os) ps a b && check r (skipn k os) ps a b
   | Other k l r =>
       match ps with
       | [p] =>
-          check l os [Partner (p_body p) (firstn k (p_pieces p)) (p_margin p)] a b &&
-          check r os [Partner (p_body p) (skipn k (p_pieces p)) (p_margin p)] a b
+          check l os [Partner (p_body p) (firstn k (p_pieces p)) (p_margin p) (p_from p)] a b &&
+          check r os [Partner (p_body p) (skipn k (p_pieces p)) (p_margin p) (p_from p)] a b
       | _ => false
       end
   end.
@@ -56,9 +60,16 @@ End Check.
 
 (** ** Bodies, pairs, pieces of the motion *)
 
-Record prepared := Prepared { pr_body : body; pr_sbody : sbody; pr_pieces : list outline }.
-Definition prepare (b : body) : prepared :=
-  Prepared b (Sbody (body_frame b) (placed (body_place b))) (outlines (body_geometry b)).
+Record prepared := Prepared { pr_number : nat; pr_body : body; pr_sbody : sbody; pr_pieces : list outline }.
+Definition prepare (i : nat) (b : body) : prepared :=
+  Prepared i b (Sbody (body_frame b) (placed (body_place b))) (outlines (body_geometry b)).
+Fixpoint prepare_all (i : nat) (bs : list body) : list prepared :=
+  match bs with [] => [] | b :: rest => prepare i b :: prepare_all (S i) rest end.
+
+(** Until when a pair is ignored; before all times, if it is not. *)
+Definition ignored_until (p : piece) (i j : nat) : Z :=
+  fold_right (fun e latest => let '(k, l, u) := e in
+                if Nat.eqb k i && Nat.eqb l j then Z.max (number_down u) latest else latest) (- one)%Z (ignored p).
 
 Definition margin_up (w : world) (m : motion) (a b : body) : Z :=
   (number_up (added_margin m) +
@@ -70,23 +81,24 @@ Definition margin_up (w : world) (m : motion) (a b : body) : Z :=
    | None, None, None => number_up (general_margin m)
    end)%Z.
 
-Definition partner_of (w : world) (m : motion) (b a : prepared) : partner :=
-  Partner (pr_sbody a) (pr_pieces a) (margin_up w m (pr_body a) (pr_body b)).
+Definition partner_of (w : world) (m : motion) (p : piece) (b a : prepared) : partner :=
+  Partner (pr_sbody a) (pr_pieces a) (margin_up w m (pr_body a) (pr_body b))
+    (ignored_until p (pr_number a) (pr_number b)).
 
 (** One root for each body that has partners before it; the nodes that are left over. *)
-Fixpoint check_bodies (w : world) (m : motion) (sfs : list sframe) (q : spiece) (until_up : Z)
+Fixpoint check_bodies (w : world) (m : motion) (sfs : list sframe) (p : piece) (until_up : Z)
     (before rest : list prepared) (nodes : list node) : option (list node) :=
   match rest with
   | [] => Some nodes
   | b :: rest' =>
       match filter (fun a => checked w m (pr_body a) (pr_body b)) before with
-      | [] => check_bodies w m sfs q until_up (before ++ [b]) rest' nodes
+      | [] => check_bodies w m sfs p until_up (before ++ [b]) rest' nodes
       | partners =>
           match nodes with
           | [] => None
           | nd :: nodes' =>
-              if check sfs q (pr_sbody b) nd (pr_pieces b) (map (partner_of w m b) partners) 0 until_up
-              then check_bodies w m sfs q until_up (before ++ [b]) rest' nodes'
+              if check sfs (spiece_of p) (pr_sbody b) nd (pr_pieces b) (map (partner_of w m p b) partners) 0 until_up
+              then check_bodies w m sfs p until_up (before ++ [b]) rest' nodes'
               else None
           end
       end
@@ -98,10 +110,23 @@ Fixpoint check_pieces (w : world) (m : motion) (sfs : list sframe) (bs : list pr
   | [] => Some nodes
   | p :: rest =>
       let until_up := match rest with [] => number_up (until m) | _ => one end in
-      match check_bodies w m sfs (spiece_of p) until_up [] bs nodes with
+      match check_bodies w m sfs p until_up [] bs nodes with
       | Some nodes' => check_pieces w m sfs bs rest nodes'
       | None => None
       end
+  end.
+
+(** Whether pieces join; 2^35, 2^44: 2^-29 and 2^-20 in units. *)
+Definition element_joins (p p' : piece) (e : element) : bool :=
+  let '(v, m) := match e with Turn _ v m _ => (v, m) | Slide _ v m _ => (v, m) end in
+  let x := tm_mul (tm_number m) (value_tm p one v) in
+  let y := tm_mul (tm_number m) (value_tm p' 0 v) in
+  Z.leb (bound (tm_sub x y)) (2 ^ 35 + Z.min (Z.shiftr (Z.abs (c0 x) - rem x) 39) (2 ^ 44)).
+Fixpoint pieces_join (w : world) (ps : list piece) : bool :=
+  match ps with
+  | p :: (p' :: _) as rest =>
+      forallb (fun f => forallb (element_joins p p') (elements f)) (frames w) && pieces_join w rest
+  | _ => true
   end.
 
 Fixpoint parents_ok (i : nat) (fs : list frame) : bool :=
@@ -113,8 +138,8 @@ Definition is_meaningful (w : world) : bool :=
   forallb frame_means (frames w) && forallb (fun b => has_rotation (body_place b)) (bodies w).
 
 Definition accepts (w : world) (m : motion) (nodes : list node) : bool :=
-  is_well_formed w && is_meaningful w &&
-  match check_pieces w m (map sframe_of (frames w)) (map prepare (bodies w)) (pieces m) nodes with
+  is_well_formed w && is_meaningful w && pieces_join w (pieces m) &&
+  match check_pieces w m (map sframe_of (frames w)) (prepare_all 0 (bodies w)) (pieces m) nodes with
   | Some [] => true
   | _ => false
   end.
@@ -128,16 +153,20 @@ Variable m : motion.
 Let sfs := map sframe_of (frames w).
 
 Lemma check_ok pc A nd : forall os ps a b, check sfs (spiece_of pc) A nd os ps a b = true ->
-  forall t P p, V a <= t <= V b -> frames_at w (value pc t) P -> In p ps -> keeps P A os p.
+  forall t P p, V a <= t <= V b -> frames_at w (value pc t) P -> In p ps -> V (p_from p) < t -> keeps P A os p.
 Proof.
   induction nd as [wh x y z | l IHl r IHr | k l IHl r IHr | k l IHl r IHr | k l IHl r IHr];
-    intros os ps a b H t P p Ht HP Ip; cbn [check] in H.
-  - apply andb_true_iff in H. destruct H as [L S]. apply Nat.leb_le in L.
-    eapply separated_ok; [exact WF | | exact S | exact Ht | exact HP | exact Ip].
-    cbn [d_frame]. unfold sfs in L. rewrite map_length in L. exact L.
+    intros os ps a b H t P p Ht HP Ip Hp; cbn [check] in H.
+  - rewrite !andb_true_iff in H. destruct H as [[L S1] S2]. apply Nat.leb_le in L.
+    assert (D : (d_frame (Direction (frame_of wh A ps) x y z) <= length (frames w))%nat).
+    { cbn [d_frame]. unfold sfs in L. rewrite map_length in L. exact L. }
+    rewrite forallb_forall in S2. specialize (S2 p Ip). rewrite !orb_true_iff in S2.
+    destruct S2 as [[E|E]|E]; [| apply Z.leb_le, V_le in E; lra |].
+    + eapply separated_ok; [exact WF | exact D | exact S1 | exact Ht | exact HP|]. apply filter_In. split; assumption.
+    + eapply separated_ok; [exact WF | exact D | exact E | | exact HP | left; reflexivity]. lra.
   - apply andb_true_iff in H. destruct H as [H1 H2].
-    destruct (Rle_lt_dec t (V ((a + b) / 2))) as [L|G]; [eapply IHl; [exact H1 | | exact HP | exact Ip]
-                                                       | eapply IHr; [exact H2 | | exact HP | exact Ip]]; lra.
+    destruct (Rle_lt_dec t (V ((a + b) / 2))) as [L|G]; [eapply IHl; [exact H1 | | exact HP | exact Ip | exact Hp]
+                                                       | eapply IHr; [exact H2 | | exact HP | exact Ip | exact Hp]]; lra.
   - apply andb_true_iff in H. destruct H as [H1 H2]. rewrite <- (firstn_skipn k ps) in Ip. apply in_app_or in Ip.
     destruct Ip as [I|I]; [eapply IHl | eapply IHr]; eassumption.
   - apply andb_true_iff in H. destruct H as [H1 H2]. intros F G HF HG x y o o' Io Co Io' Co'.
@@ -146,8 +175,8 @@ Proof.
   - destruct ps as [|p' [|]]; try discriminate. apply andb_true_iff in H. destruct H as [H1 H2].
     destruct Ip as [->|[]]. intros F G HF HG x y o o' Io Co Io' Co'.
     rewrite <- (firstn_skipn k (p_pieces p)) in Io'. apply in_app_or in Io'. destruct Io' as [I|I].
-    + exact (IHl _ _ _ _ H1 t P _ Ht HP (or_introl eq_refl) F G HF HG x y o o' Io Co I Co').
-    + exact (IHr _ _ _ _ H2 t P _ Ht HP (or_introl eq_refl) F G HF HG x y o o' Io Co I Co').
+    + exact (IHl _ _ _ _ H1 t P _ Ht HP (or_introl eq_refl) Hp F G HF HG x y o o' Io Co I Co').
+    + exact (IHr _ _ _ _ H2 t P _ Ht HP (or_introl eq_refl) Hp F G HF HG x y o o' Io Co I Co').
 Qed.
 
 Lemma margin_up_ok a b : margin w m a b <= V (margin_up w m a b).
@@ -159,17 +188,31 @@ Proof.
   pose proof (number_up_ok x). pose proof (number_up_ok y). apply Rmax_lub; lra.
 Qed.
 
-(** What one root shows. *)
-Lemma root_ok pc u nd (a b : body) (before : list prepared) t : In (prepare a) before -> checked w m a b = true ->
-  check sfs (spiece_of pc) (pr_sbody (prepare b)) nd (pr_pieces (prepare b))
-    (map (partner_of w m (prepare b)) (filter (fun p => checked w m (pr_body p) b) before)) 0 u = true ->
-  0 <= t <= V u -> apart w m (value pc t) a b.
+Lemma ignored_until_ok p i j t : 0 <= t -> (forall u, In (i, j, u) (ignored p) -> real u < t) ->
+  V (ignored_until p i j) < t.
 Proof.
-  intros Ia C H Ht P A B HP HA HB x y (x' & Ix & ->) (y' & Iy & ->).
-  assert (Ip : In (partner_of w m (prepare b) (prepare a))
-    (map (partner_of w m (prepare b)) (filter (fun p => checked w m (pr_body p) b) before))).
+  intros H0 H. unfold ignored_until. induction (ignored p) as [|[[k l] u] rest IH]; cbn [fold_right].
+  - rewrite V_opp, V_one. lra.
+  - specialize (IH (fun v I => H v (or_intror I))).
+    destruct (Nat.eqb_spec k i) as [->|_]; [|exact IH]. destruct (Nat.eqb_spec l j) as [->|_]; [|exact IH].
+    cbn [andb]. pose proof (H u (or_introl eq_refl)). pose proof (number_down_ok u).
+    destruct (Z.max_spec (number_down u) (fold_right (fun e latest => let '(k, l, u0) := e in
+      if Nat.eqb k i && Nat.eqb l j then Z.max (number_down u0) latest else latest) (- one)%Z rest)) as [[_ ->]|[_ ->]];
+      [exact IH | lra].
+Qed.
+
+(** What one root shows. *)
+Lemma root_ok pc u nd i j (a b : body) (before : list prepared) t : In (prepare i a) before -> checked w m a b = true ->
+  check sfs (spiece_of pc) (pr_sbody (prepare j b)) nd (pr_pieces (prepare j b))
+    (map (partner_of w m pc (prepare j b)) (filter (fun p => checked w m (pr_body p) b) before)) 0 u = true ->
+  0 <= t <= V u -> (forall v, In (i, j, v) (ignored pc) -> real v < t) -> apart w m (value pc t) a b.
+Proof.
+  intros Ia C H Ht HI P A B HP HA HB x y (x' & Ix & ->) (y' & Iy & ->).
+  assert (Ip : In (partner_of w m pc (prepare j b) (prepare i a))
+    (map (partner_of w m pc (prepare j b)) (filter (fun p => checked w m (pr_body p) b) before))).
   { apply in_map. apply filter_In. split; [exact Ia | exact C]. }
-  rewrite <- V_0 in Ht. pose proof (check_ok pc _ nd _ _ _ _ H t P _ Ht HP Ip) as K.
+  pose proof (ignored_until_ok pc i j t (proj1 Ht) HI) as HF.
+  rewrite <- V_0 in Ht. pose proof (check_ok pc _ nd _ _ _ _ H t P _ Ht HP Ip HF) as K.
   destruct (outlines_cover _ _ Ix) as (o & Io & Co). destruct (outlines_cover _ _ Iy) as (o' & Io' & Co').
   assert (N : norm (sub (P (body_frame a) (A x')) (P (body_frame b) (B y'))) =
               norm (sub (P (body_frame b) (B y')) (P (body_frame a) (A x')))).
@@ -178,50 +221,95 @@ Proof.
   exact (K B A (fun s => placed_ok s _ _ HB) (fun s => placed_ok s _ _ HA) y' x' o' o Io' Co' Io Co).
 Qed.
 
-Lemma nth_error_split_before {T} (l r : list T) i x : (i < length l)%nat -> nth_error (l ++ r) i = Some x ->
-  nth_error l i = Some x.
-Proof. intros H. rewrite nth_error_app1 by exact H. trivial. Qed.
-
-(** All pairs of [rest] with what stands before them. *)
-Lemma check_bodies_ok pc u rest : forall before nodes left,
-  check_bodies w m sfs (spiece_of pc) u before (map prepare rest) nodes = Some left ->
-  forall l b r a t, rest = l ++ b :: r -> In (prepare a) (before ++ map prepare l) -> checked w m a b = true ->
-  0 <= t <= V u -> apart w m (value pc t) a b.
+(** All pairs of [rest], whose numbers begin with n, with what stands before them. *)
+Lemma check_bodies_ok pc u rest : forall n before nodes left,
+  check_bodies w m sfs pc u before (prepare_all n rest) nodes = Some left ->
+  forall k b i a t, nth_error rest k = Some b ->
+  In (prepare i a) before \/ (exists k', (k' < k)%nat /\ nth_error rest k' = Some a /\ i = (n + k')%nat) ->
+  checked w m a b = true -> 0 <= t <= V u -> (forall v, In (i, (n + k)%nat, v) (ignored pc) -> real v < t) ->
+  apart w m (value pc t) a b.
 Proof.
-  induction rest as [|c rest IH]; intros before nodes left H l b r a t E Ia C Ht.
-  - destruct l; discriminate.
-  - cbn [map check_bodies] in H.
-    set (found := filter (fun p => checked w m (pr_body p) (pr_body (prepare c))) before) in *.
-    assert (LATER : forall l', l = c :: l' -> forall nodes', check_bodies w m sfs (spiece_of pc) u (before ++ [prepare c])
-      (map prepare rest) nodes' = Some left -> apart w m (value pc t) a b).
-    { intros l' -> nodes' H'. cbn [app] in E. injection E as E.
-      apply (IH _ _ _ H' l' b r a t E); [|exact C | exact Ht].
-      rewrite <- app_assoc. exact Ia. }
-    destruct l as [|c' l'].
-    + cbn [app] in E. injection E as <- _. cbn [map] in Ia. rewrite app_nil_r in Ia.
+  induction rest as [|c rest IH]; intros n before nodes left H k b i a t Nb Ia C Ht HI.
+  - destruct k; discriminate.
+  - cbn [prepare_all check_bodies] in H.
+    set (found := filter (fun p => checked w m (pr_body p) (pr_body (prepare n c))) before) in *.
+    destruct k as [|k].
+    + cbn in Nb. injection Nb as ->. destruct Ia as [Ia|(k' & L & _)]; [|lia]. rewrite Nat.add_0_r in HI.
       destruct found as [|p ps] eqn:F.
-      * assert (I : In (prepare a) found) by (apply filter_In; split; [exact Ia | exact C]). rewrite F in I. destruct I.
+      * assert (I : In (prepare i a) found) by (apply filter_In; split; [exact Ia | exact C]). rewrite F in I. destruct I.
       * destruct nodes as [|nd nodes']; [discriminate|].
         destruct (check sfs _ _ nd _ _ 0 u) eqn:K; [|discriminate].
-        apply (root_ok pc u nd a c before t Ia C); [|exact Ht].
-        change (filter (fun p => checked w m (pr_body p) c) before) with found. rewrite F. exact K.
-    + assert (c' = c) as -> by (cbn in E; congruence).
-      destruct found as [|p ps]; [exact (LATER l' eq_refl _ H)|].
+        apply (root_ok pc u nd i n a b before t Ia C); [|exact Ht | exact HI].
+        change (filter (fun p => checked w m (pr_body p) b) before) with found. rewrite F. exact K.
+    + cbn [nth_error] in Nb.
+      assert (LATER : forall nodes', check_bodies w m sfs pc u (before ++ [prepare n c])
+        (prepare_all (S n) rest) nodes' = Some left -> apart w m (value pc t) a b).
+      { intros nodes' H'. replace (n + S k)%nat with (S n + k)%nat in HI by lia.
+        apply (IH _ _ _ _ H' k b i a t Nb); [|exact C | exact Ht | exact HI].
+        destruct Ia as [Ia|(k' & L & Na & ->)]; [left; apply in_or_app; left; exact Ia|].
+        destruct k' as [|k'].
+        - cbn in Na. injection Na as ->. left. apply in_or_app. right. left. rewrite Nat.add_0_r. reflexivity.
+        - right. exists k'. split; [lia|]. split; [exact Na | lia]. }
+      destruct found as [|p ps]; [exact (LATER _ H)|].
       destruct nodes as [|nd nodes']; [discriminate|].
-      destruct (check sfs _ _ nd _ _ 0 u); [|discriminate]. exact (LATER l' eq_refl _ H).
+      destruct (check sfs _ _ nd _ _ 0 u); [|discriminate]. exact (LATER _ H).
 Qed.
 
 Lemma check_pieces_ok ps : forall nodes left,
-  check_pieces w m sfs (map prepare (bodies w)) ps nodes = Some left ->
+  check_pieces w m sfs (prepare_all 0 (bodies w)) ps nodes = Some left ->
   forall k p, nth_error ps k = Some p ->
-  exists nodes' left', check_bodies w m sfs (spiece_of p)
-    (if Nat.eqb (S k) (length ps) then number_up (until m) else one) [] (map prepare (bodies w)) nodes' = Some left'.
+  exists nodes' left', check_bodies w m sfs p
+    (if Nat.eqb (S k) (length ps) then number_up (until m) else one) [] (prepare_all 0 (bodies w)) nodes' = Some left'.
 Proof.
   induction ps as [|p0 rest IH]; intros nodes left H k p N; [destruct k; discriminate|]. cbn [check_pieces] in H.
-  destruct (check_bodies w m sfs (spiece_of p0) _ [] _ nodes) as [nodes1|] eqn:B; [|discriminate].
+  destruct (check_bodies w m sfs p0 _ [] _ nodes) as [nodes1|] eqn:B; [|discriminate].
   destruct k as [|k].
   - cbn in N. injection N as <-. exists nodes, nodes1. rewrite <- B. f_equal. destruct rest; reflexivity.
   - cbn [nth_error] in N. destruct (IH _ _ H k p N) as (n' & l' & E). exists n', l'. exact E.
+Qed.
+
+Lemma element_joins_ok p p' e : element_joins p p' e = true ->
+  let '(v, mm) := match e with Turn _ v m _ => (v, m) | Slide _ v m _ => (v, m) end in
+  let x := real mm * value p 1 v in
+  Rabs (x - real mm * value p' 0 v) <= / 2 ^ 29 + Rmin (Rabs x / 2 ^ 39) (/ 2 ^ 20).
+Proof.
+  unfold element_joins. destruct (match e with Turn _ v m _ => (v, m) | Slide _ v m _ => (v, m) end) as [v mm].
+  intros H. apply Z.leb_le, V_le in H. set (xm := tm_mul (tm_number mm) (value_tm p one v)) in *.
+  assert (Z1 : Rabs 0 <= 1) by (rewrite Rabs_R0; lra).
+  pose proof (value_ok p one v) as H1. rewrite V_one in H1. pose proof (value_ok p' 0 v) as H0. rewrite V_0 in H0.
+  pose proof (holds_mul _ _ 0 _ _ Z1 (holds_number 0 mm) H1) as HX. fold xm in HX.
+  pose proof (holds_mul _ _ 0 _ _ Z1 (holds_number 0 mm) H0) as HY.
+  pose proof (bound_ge _ 0 _ Z1 (holds_sub _ _ _ _ _ HX HY)) as B.
+  set (x := real mm * value p 1 v) in *.
+  assert (X : V (Z.abs (c0 xm) - rem xm) <= Rabs x).
+  { rewrite V_sub, V_abs. unfold holds, poly in HX.
+    replace (V (c0 xm) + V (c1 xm) * 0 + V (c2 xm) * (0 * 0)) with (V (c0 xm)) in HX by ring.
+    pose proof (Rabs_triang x (V (c0 xm) - x)) as T. replace (x + (V (c0 xm) - x)) with (V (c0 xm)) in T by ring.
+    rewrite <- Rabs_Ropp in HX. replace (- (x - V (c0 xm))) with (V (c0 xm) - x) in HX by ring. lra. }
+  set (k := (Z.abs (c0 xm) - rem xm)%Z) in *.
+  pose proof (shiftr_err k 39 ltac:(lia)) as S. rewrite two_power in S by lia.
+  replace (powerRZ 2 39) with (2 ^ 39) in S by (change 39%Z with (Z.of_nat 39); rewrite pow_powerRZ; reflexivity).
+  rewrite V_add in H. 
+  assert (E29 : V (2 ^ 35) = / 2 ^ 29) by (symmetry; exact (power_neg 29 ltac:(lia))). rewrite E29 in H.
+  assert (M : V (Z.min (Z.shiftr k 39) (2 ^ 44)) <= Rmin (Rabs x / 2 ^ 39) (/ 2 ^ 20)).
+  { apply Rmin_glb.
+    - apply Rle_trans with (V (Z.shiftr k 39)); [apply V_le; lia|].
+      apply Rle_trans with (V k / 2 ^ 39); [lra|]. apply Rmult_le_compat_r; [|exact X].
+      left. apply Rinv_0_lt_compat, pow_lt. lra.
+    - apply Rle_trans with (V (2 ^ 44)); [apply V_le; lia|]. apply Req_le. symmetry. apply (power_neg 20). lia. }
+  cbv zeta. lra.
+Qed.
+
+Lemma pieces_join_ok ps : pieces_join w ps = true ->
+  forall k p p', nth_error ps k = Some p -> nth_error ps (S k) = Some p' -> joined w p p'.
+Proof.
+  induction ps as [|p0 rest IH]; intros H k p p' Np Np'; [destruct k; discriminate|].
+  destruct rest as [|p1 rest]; [destruct k as [|[|]]; discriminate|].
+  cbn [pieces_join] in H. apply andb_true_iff in H. destruct H as [H1 H2]. destruct k as [|k].
+  - cbn in Np, Np'. injection Np as <-. injection Np' as <-. intros f e If Ie.
+    rewrite forallb_forall in H1. specialize (H1 f If). rewrite forallb_forall in H1.
+    exact (element_joins_ok p0 p1 e (H1 e Ie)).
+  - exact (IH H2 k p p' Np Np').
 Qed.
 End Sound.
 
@@ -236,23 +324,22 @@ Qed.
 
 Theorem accepts_sound w m nodes : accepts w m nodes = true -> claim w m.
 Proof.
-  unfold accepts. rewrite !andb_true_iff. intros [[HW HM] H].
+  unfold accepts. rewrite !andb_true_iff. intros [[[HW HM] HJ] H].
   assert (WF : well_formed w).
   { apply andb_true_iff in HW. destruct HW as [H1 H2]. split.
     - intros i f N. exact (parents_ok_spec _ 0 H1 i f N).
     - intros b I. rewrite forallb_forall in H2. apply Nat.leb_le, H2, I. }
-  split.
+  split; [|split].
   { apply andb_true_iff in HM. destruct HM as [M1 M2]. split.
     - intros q. apply frames_exist; [apply WF | exact M1].
     - intros b I. rewrite forallb_forall in M2. apply has_rotation_ok, M2, I. }
-  intros k p Np i j a b Hij Na Nb C t Ht.
-  destruct (check_pieces w m (map sframe_of (frames w)) (map prepare (bodies w)) (pieces m) nodes) as [left|] eqn:K;
+  { apply pieces_join_ok. exact HJ. }
+  intros k p Np i j a b Hij Na Nb C t Ht HI.
+  destruct (check_pieces w m (map sframe_of (frames w)) (prepare_all 0 (bodies w)) (pieces m) nodes) as [left|] eqn:K;
     [|discriminate]. clear H.
   destruct (check_pieces_ok w m _ _ _ K k p Np) as (nodes' & left' & B).
-  apply nth_error_split in Nb. destruct Nb as (l & r & E & Ll).
-  apply (check_bodies_ok w WF m p _ (bodies w) [] nodes' left' B l b r a t); [exact E | | exact C|].
-  - cbn [app]. apply in_map. apply nth_error_In with i. rewrite E in Na.
-    apply nth_error_split_before in Na; [exact Na | lia].
+  apply (check_bodies_ok w WF m p _ (bodies w) 0 [] nodes' left' B j b i a t Nb); [|exact C | | exact HI].
+  - right. exists i. split; [exact Hij|]. split; [exact Na | reflexivity].
   - destruct Ht as [H0 H1]. split; [exact H0|]. eapply Rle_trans; [exact H1|]. unfold ends.
     destruct (Nat.eqb (S k) (length (pieces m))); [apply number_up_ok | rewrite V_one; lra].
 Qed.

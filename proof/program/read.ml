@@ -295,14 +295,23 @@ let world text =
 
 (* ---- The motion ---- *)
 
+(* A number in [0, 1]. *)
+let fraction l =
+  let x = not_negative l in
+  let bits = Z.numbits x.mantissa + Z.to_int x.exponent in
+  if Z.sign x.mantissa > 0 && (bits > 1 || (bits = 1 && not (Z.equal x.mantissa Z.one))) then
+    fail l "the time is in [0, 1]";
+  x
+
 (* The motion and the hash of its world. *)
-let motion text variables =
+let motion text variables bodies =
   let l = start text "motion" "fcl_artic motion 1" in
   let world = ref None and margin = ref None and added = ref None and reach = ref None in
-  let duration = ref None and until = ref None and pieces = ref [] in
+  let duration = ref None and until = ref None in
+  let values = ref [] and left_out = ref [] in  (* of each piece, the last one first *)
   let set item value =
     if !item <> None then fail l "the item is there already";
-    if !pieces <> [] then fail l "the item comes before the first piece";
+    if !values <> [] then fail l "the item comes before the first piece";
     item := Some value
   in
   while next l do
@@ -318,12 +327,12 @@ let motion text variables =
         then fail l "the scope is self, scene or both";
         set reach words
     | "duration" -> set duration (number l)
-    | "until" -> set until (not_negative l)
+    | "until" -> set until (fraction l)
     | "piece" ->
-        if !pieces <> [] then scope l "a motion of more than one piece";
-        pieces := Array.make variables [] :: !pieces
+        values := Array.make variables [] :: !values;
+        left_out := ref [] :: !left_out
     | "q" -> (
-        match !pieces with
+        match !values with
         | [] -> fail l "a 'piece' comes first"
         | piece :: _ ->
             let v = integer l variables in
@@ -331,21 +340,27 @@ let motion text variables =
             let n = List.length l.words in
             if n < 1 || n > 6 then fail l "a polynomial has 1 to 6 coefficients";
             piece.(v) <- List.init n (fun _ -> number l))
+    | "ignored" -> (
+        match !left_out with
+        | [] -> fail l "a 'piece' comes first"
+        | list :: _ ->
+            let a = integer l bodies in
+            let b = integer l bodies in
+            if a >= b then fail l "of an ignored pair the lower number comes first";
+            list := ((a, b), fraction l) :: !list)
     | "orientation" -> scope l "orientation"
-    | "ignored" -> scope l "ignored pairs"
     | kind -> fail l ("there is no item '" ^ kind ^ "'"));
     last l
   done;
   let need what item = match !item with Some x -> x | None -> fail l (what ^ " is missing") in
   let zero = { mantissa = Z.zero; exponent = Z.zero } in
-  let reach = need "scope" reach and until = need "until" until in
-  if Z.sign until.mantissa > 0 && Z.numbits until.mantissa + Z.to_int until.exponent > 1 then fail l "'until' is in [0, 1]";
-  if Z.numbits until.mantissa + Z.to_int until.exponent = 1 && not (Z.equal until.mantissa Z.one) then
-    fail l "'until' is in [0, 1]";
-  if !pieces = [] then fail l "there is no piece";
+  let reach = need "scope" reach in
+  if !values = [] then fail l "there is no piece";
+  let pieces =
+    List.rev (List.map2 (fun q i -> { polynomials = Array.to_list q; ignored = !i }) !values !left_out)
+  in
   ( { general_margin = need "margin" margin; added_margin = Option.value !added ~default:zero;
-      scope_self = List.mem "self" reach; scope_scene = List.mem "scene" reach; until;
-      pieces = List.rev_map Array.to_list !pieces },
+      scope_self = List.mem "self" reach; scope_scene = List.mem "scene" reach; until = need "until" until; pieces },
     need "world" world )
 
 (* ---- Certificates ---- *)
@@ -424,9 +439,13 @@ let rec node b depth =
   | 0x20 -> raise (Out_of_scope "the proof: a contact")
   | k -> raise (Bad_input (Printf.sprintf "there is no node of kind %d" k))
 
-(* The hash of the motion, and the roots. *)
+(* The hash of the motion, the roots, and whether a contact comes after them, which is not looked at. *)
 let proof data =
   let b = { data; pos = 0 } in
   let hash = take b 32 in
-  let rec go acc = if b.pos = String.length data then List.rev acc else go (node b 0 :: acc) in
-  (hash, go [])
+  let rec go acc =
+    if b.pos = String.length data then (hash, List.rev acc, false)
+    else if data.[b.pos] = '\x20' then (hash, List.rev acc, true)
+    else go (node b 0 :: acc)
+  in
+  go []
