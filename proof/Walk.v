@@ -31,6 +31,9 @@ Definition frame_of (where_ : place) (A : sbody) (ps : list partner) : nat :=
   | InPartners, [] => O
   end.
 
+(** Whether both parts of a list are there: the format asks for it, the proof below does not. *)
+Definition cuts (count size : nat) : bool := Nat.ltb 0 count && Nat.ltb count size.
+
 Section Check.
 Variable sfs : list sframe.
 Variable q : spiece.
@@ -46,13 +49,14 @@ Fixpoint check (nd : node) (os : list outline) (ps : list partner) (a b : Z) : b
       forallb (fun p => Z.leb (p_from p) a || Z.leb b (p_from p) ||
                         separated leaf_halvings sfs q A os n [p] (p_from p) b) ps
   | Time l r => let c := ((a + b) / 2)%Z in check l os ps a c && check r os ps c b
-  | Partners k l r => check l os (firstn k ps) a b && check r os (skipn k ps) a b
-  | Own k l r => check l (firstn k os) ps a b && check r (skipn k os) ps a b
+  | Partners k l r => cuts k (length ps) && (check l os (firstn k ps) a b && check r os (skipn k ps) a b)
+  | Own k l r => cuts k (length os) && (check l (firstn k os) ps a b && check r (skipn k os) ps a b)
   | Other k l r =>
       match ps with
       | [p] =>
-          check l os [Partner (p_body p) (firstn k (p_pieces p)) (p_margin p) (p_from p)] a b &&
-          check r os [Partner (p_body p) (skipn k (p_pieces p)) (p_margin p) (p_from p)] a b
+          cuts k (length (p_pieces p)) &&
+          (check l os [Partner (p_body p) (firstn k (p_pieces p)) (p_margin p) (p_from p)] a b &&
+          check r os [Partner (p_body p) (skipn k (p_pieces p)) (p_margin p) (p_from p)] a b)
       | _ => false
       end
   end.
@@ -167,12 +171,12 @@ Proof.
   - apply andb_true_iff in H. destruct H as [H1 H2].
     destruct (Rle_lt_dec t (V ((a + b) / 2))) as [L|G]; [eapply IHl; [exact H1 | | exact HP | exact Ip | exact Hp]
                                                        | eapply IHr; [exact H2 | | exact HP | exact Ip | exact Hp]]; lra.
-  - apply andb_true_iff in H. destruct H as [H1 H2]. rewrite <- (firstn_skipn k ps) in Ip. apply in_app_or in Ip.
+  - rewrite !andb_true_iff in H. destruct H as [_ [H1 H2]]. rewrite <- (firstn_skipn k ps) in Ip. apply in_app_or in Ip.
     destruct Ip as [I|I]; [eapply IHl | eapply IHr]; eassumption.
-  - apply andb_true_iff in H. destruct H as [H1 H2]. intros F G HF HG x y o o' Io Co Io' Co'.
+  - rewrite !andb_true_iff in H. destruct H as [_ [H1 H2]]. intros F G HF HG x y o o' Io Co Io' Co'.
     rewrite <- (firstn_skipn k os) in Io. apply in_app_or in Io.
     destruct Io as [I|I]; [eapply IHl | eapply IHr]; eassumption.
-  - destruct ps as [|p' [|]]; try discriminate. apply andb_true_iff in H. destruct H as [H1 H2].
+  - destruct ps as [|p' [|]]; try discriminate. rewrite !andb_true_iff in H. destruct H as [_ [H1 H2]].
     destruct Ip as [->|[]]. intros F G HF HG x y o o' Io Co Io' Co'.
     rewrite <- (firstn_skipn k (p_pieces p)) in Io'. apply in_app_or in Io'. destruct Io' as [I|I].
     + exact (IHl _ _ _ _ H1 t P _ Ht HP (or_introl eq_refl) Hp F G HF HG x y o o' Io Co I Co').
