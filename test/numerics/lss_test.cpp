@@ -120,6 +120,7 @@ TEST(LineSweptSphere, CertificateWithBoxIsNeverWrong) {
     M.linear() = random.rotation();
     M.translation() = rounded(body.x) - M.linear() * (y + gap * out);
     box.inverse = makePlacement(stored(M).inverse());
+    box.from_its_frame = touching.checks % 2 == 1;
     const double size = rounded(body.x).norm() + M.translation().norm() + y.norm() + gap + c.extent_b;
     const auto setRadius = [&](double radius) { box.radius = radius; };
     touching.check(gap, size, mode, c, body, setRadius, [&] { return subject.apartFromBox(c.in, body.input, box); });

@@ -186,7 +186,10 @@ unsigned apartFromBox(const PairInput& in, const LssInput& lss, const numerics_t
   }
   box.radius = still.radius;
   NearestToBox nearest;
-  return certainlyApart(swept, box, still.inverse, in.margin, nearest);
+  if (!still.from_its_frame) return certainlyApart(swept, box, WorldSeen{still.inverse}, in.margin, nearest);
+  SweptLss seen;
+  seeFrom(still.inverse, swept, seen);
+  return certainlyApart(seen, box, OwnFrame(), in.margin, nearest);
 }
 
 unsigned apartFromLss(const PairInput& in, const LssInput& a, const LssInput& b) {
