@@ -65,7 +65,7 @@ struct LssInput {
 /// A box, grown by a ball, that stands still.
 struct StillBox {
   double lo[3], hi[3], radius = 0;
-  engine::Placement inverse;  ///< the base frame in the box's
+  engine::Placement inverse;    ///< the base frame in the box's
   bool from_its_frame = false;  ///< the line swept sphere is seen from there first, as stage 1 sees it in a large body
 };
 
