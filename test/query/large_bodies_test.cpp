@@ -467,6 +467,7 @@ class Judge {
     CertifiedRequest request = request_;
     const CertifiedResult a = way_.ask(*world_.whole, request), b = way_.ask(*world_.cut, request);
     count(a);
+    searchesNoMore(a);
     if (a.status == Status::undecided || b.status == Status::undecided) fault("undecided", text(a) + ", " + text(b));
     inside_ = startsInside();
     case_.tally.count("inside a solid", inside_);
@@ -482,6 +483,16 @@ class Judge {
                           all_of_cut =
                               request_.mode == ContactMode::firstOfEveryPair ? b : way_.ask(*world_.cut, request);
     compareEvery(all, all_of_cut);
+    if (world_.limbs.size() == 1 && ignored.empty() && !request.check_self) {
+      request.mode = ContactMode::first;
+      const CertifiedResult first = way_.ask(*world_.whole, request);
+      const auto work = [](const CertifiedResult& r) {
+        return r.statistics.leaf_tests + r.statistics.node_tests + r.statistics.certificates + r.statistics.gjk;
+      };
+      compare("first and every pair's", first, all);
+      case_.tally.count("work for the only pair", work(all));
+      case_.tally.count("work for the first pair", work(first));
+    }
     if (ignored.empty() && ignored_of_cut.empty()) {
       compare("whole and cut", a, b);
       compare("whole and every pair's", a, all);
@@ -520,6 +531,15 @@ class Judge {
     tally.count("culled by stage 2", a.statistics.visibility.culled > 0);
     tally.count("left by stage 1", a.statistics.pairs_after_culling > 0);
     tally.count("free, left by stage 1", a.isFree() && a.statistics.pairs_after_culling > 0);
+  }
+  /// Where stage 2 has proven all pairs free, nothing is left to do. (ContactMode::any tries poses before it.)
+  void searchesNoMore(const CertifiedResult& a) {
+    const QueryStatistics& s = a.statistics;
+    if (request_.mode == ContactMode::any || !a.isFree() || s.visibility.culled == 0 ||
+        s.visibility.culled < s.pairs_after_culling)
+      return;
+    case_.tally.count("all culled by stage 2");
+    if (s.gjk + s.certificates + s.leaf_tests > 0) fault("searched though all is free", text(a));
   }
   bool startsInside() const {
     if (!world_.large.solid) return false;
@@ -680,7 +700,7 @@ void wholeAndCut(campaign::Case& c) {
   request.mode = static_cast<ContactMode>(random.below(3));
   request.max_contacts = 1000000;
   request.check_self = random.oneIn(4);
-  request.visibility = random.oneIn(4) ? VisibilityMode::on : VisibilityMode::off;
+  request.visibility = random.oneIn(2) ? VisibilityMode::on : VisibilityMode::off;
   request.ignore_initial_contact = random.oneIn(4);
   request.tolerance_distance = 1e-6 * std::min(1.0, w.size);
   if (random.oneIn(4)) request.margin = w.size * random.logUniform(1e-4, 0.1);
@@ -706,6 +726,38 @@ TEST(LargeBodies, AreTheirPieces) {
   EXPECT_GT(all.share("free"), 0.5);  // of four motions
   EXPECT_GT(all.share("later contact"), 0.3);
   EXPECT_GT(all.share("contact at once"), 0.1);
+  EXPECT_GT(all["deep"], 0u);
+  EXPECT_GT(all["inside a solid"], 0u);
+  EXPECT_GT(all["initial contact ignored"], 0u);
+  EXPECT_GT(all["free, left by stage 1"], 0u);
+  EXPECT_GT(all["all culled by stage 2"], 0u);
+}
+
+/// A ball goes up to a slope: what stage 1 leaves of the slope is searched together, as one pair.
+TEST(LargeBodies, AreSearchedOnceForEveryPair) {
+  Random random(1);
+  Large slope;
+  slope.kind = Large::terrain;
+  drawTriangles(random, 3000, slope);
+  for (Vector3d& v : slope.mesh.vertices) v[2] = 0.1 * v[0] + 0.02 * std::sin(20 * v[0]) * std::sin(20 * v[1]);
+  Cart cart(std::make_shared<fcl::Sphered>(0.05));
+  cart.manager->registerObject(object(slope.mesh.surface()), "slope");
+  cart.manager->setup();
+  std::uint64_t work[2];
+  CertifiedResult r[2];
+  for (const int i : {0, 1}) {
+    CertifiedRequest request;
+    request.mode = i ? ContactMode::firstOfEveryPair : ContactMode::first;
+    request.max_contacts = 100;
+    r[i] = cart.run(-0.9, 0.9, request);
+    ASSERT_TRUE(r[i].certain);
+    ASSERT_EQ(r[i].contacts.size(), 1u);
+    const QueryStatistics& s = r[i].statistics;
+    work[i] = s.node_tests + s.leaf_tests + s.certificates + s.gjk;
+  }
+  EXPECT_NEAR(r[0].t_lower, r[1].t_lower, 1e-6);
+  EXPECT_GT(r[0].t_lower, 0.1);
+  EXPECT_LT(work[1], 2 * work[0]) << work[0];
 }
 
 }  // namespace large_bodies_test
