@@ -586,7 +586,7 @@ def test_visibility_does_not_change_answers(world, hit, miss):
         assert at_once.t_lower <= alone.t_upper and alone.t_lower <= at_once.t_upper
         assert at_once.statistics["visibility"]["repeated"] == 0
     world.set_visibility("cpu", resolution=16)
-    assert world.check(*miss, visibility=fcl_artic.VisibilityMode.ON).statistics["visibility_executor"] == "cpu"
+    assert world.check(*hit, visibility=fcl_artic.VisibilityMode.ON).statistics["visibility_executor"] == "cpu"
     with pytest.raises(ValueError, match="resolution"):
         world.set_visibility("cpu", resolution=3)
 

@@ -315,11 +315,13 @@ bool liesIn(const Vector3d& p, double r, const Vector3d& c, double R) {
 TEST(PointCloud, ThinnedHoldsEveryBall) {
   std::size_t balls = 0, thinned_balls = 0, tight = 0;
   for (int round = 0; round < 40; ++round) {
-    const double scale = std::pow(10, uniform(-3, 3)), voxel = std::max(1e-6, scale * std::pow(10, uniform(-2, 0.5)));
+    const bool many = round % 20 == 0;  // over threads; in voxels that hold several
+    const double scale = std::pow(10, uniform(-3, 3)), exponent = uniform(many ? -0.7 : -2, 0.5);
+    const double voxel = std::max(1e-6, scale * std::pow(10, exponent));
     const Vector3d place = round % 3 == 0 ? Vector3d(uniform(-1e5, 1e5), uniform(-1e5, 1e5), 0) : Vector3d(0, 0, 0);
     std::vector<Vector3d> points;
     std::vector<double> radii;
-    const int n = round % 20 == 0 ? 20000 : 300;  // many: over threads
+    const int n = many ? 20000 : 300;
     for (int i = 0; i < n; ++i) {
       points.push_back(place + scale * Vector3d(uniform(-1, 1), uniform(-1, 1), round % 2 ? 0 : uniform(-1, 1)));
       if (i % 20 == 19) points.back() = points[static_cast<std::size_t>(i - 7)];
