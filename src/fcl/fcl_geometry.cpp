@@ -160,7 +160,7 @@ class CellReader {
       cells.push_back(cell);
       return true;
     });
-    return ShapeTree::fromPieces(std::move(cells));
+    return ShapeTree::fromPieces(cells);
   }
   /// Calls found(center, half a side) for each cell, until that returns false.
   template <class OnCell>
@@ -476,14 +476,14 @@ GeometryContent::GeometryContent(const fcl::CollisionGeometryd& geometry, std::s
 
 namespace {
 
-/// Whether the tree is that of these balls, bit for bit: it has the number of each.
+/// Whether the tree is that of these balls: it has the number of each.
 bool isOfBalls(const engine::TreeView& tree, const PointCloud& cloud) {
   const std::vector<Eigen::Vector3d>& points = cloud.points();
   if (points.size() != static_cast<std::size_t>(tree.num_pieces)) return false;
   return std::all_of(tree.pieces, tree.pieces + tree.num_pieces, [&](const Piece& ball) {
     const auto i = static_cast<std::size_t>(ball.primitive);
     const double radius = cloud.radius(i);
-    return std::memcmp(points[i].data(), ball.center, sizeof ball.center) == 0 && radius == ball.radius;
+    return std::equal(ball.center, ball.center + 3, points[i].data()) && radius == ball.radius;
   });
 }
 
@@ -491,7 +491,7 @@ bool haveSameBalls(const engine::TreeView& a, const engine::TreeView& b) {
   return std::equal(a.pieces, a.pieces + a.num_pieces, b.pieces, b.pieces + b.num_pieces,
                     [](const Piece& one, const Piece& other) {
                       return one.primitive == other.primitive && one.radius == other.radius &&
-                             std::memcmp(one.center, other.center, sizeof one.center) == 0;
+                             std::equal(one.center, one.center + 3, other.center);
                     });
 }
 

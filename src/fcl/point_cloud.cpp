@@ -21,7 +21,7 @@ void refuse(const std::string& why) {
 }
 
 bool isThere(const Eigen::Vector3d& x) {
-  return (std::abs(x[0]) <= 1e9) & (std::abs(x[1]) <= 1e9) & (std::abs(x[2]) <= 1e9);  // false for NaN
+  return std::abs(x[0]) <= 1e9 && std::abs(x[1]) <= 1e9 && std::abs(x[2]) <= 1e9;  // false for NaN
 }
 
 template <class S>
@@ -35,7 +35,7 @@ FramePoints readRows(const char* row, std::size_t count, const FrameLayout& layo
     std::memcpy(&x[1], row + layout.y, sizeof(S));
     std::memcpy(&x[2], row + layout.z, sizeof(S));
     constexpr S kMost = std::numeric_limits<S>::max();
-    const bool there = (std::abs(x[0]) <= kMost) & (std::abs(x[1]) <= kMost) & (std::abs(x[2]) <= kMost);
+    const bool there = std::abs(x[0]) <= kMost && std::abs(x[1]) <= kMost && std::abs(x[2]) <= kMost;
     if (!there) {
       if (frame.missing++ == 0) {  // the rows before it are points
         frame.rows.resize(i);

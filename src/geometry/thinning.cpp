@@ -66,9 +66,7 @@ class VoxelTable {
 
  private:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  static bool isIn(const Voxel& voxel, const VoxelCell& cell) {
-    return (voxel.cell[0] == cell[0]) & (voxel.cell[1] == cell[1]) & (voxel.cell[2] == cell[2]);
-  }
+  static bool isIn(const Voxel& voxel, const VoxelCell& cell) { return (voxel.cell == cell).all(); }
   void grow() {
     slots_.assign(2 * slots_.size(), kNone);
     for (std::size_t i = 0; i < voxels.size(); ++i) {

@@ -259,7 +259,7 @@ std::string messageOf(const std::function<void()>& call) {
 namespace {
 
 /// The sign of a sum of doubles, exactly: each partial sum keeps what rounding takes (J. R. Shewchuk 1997).
-int signOfSum(std::vector<double> terms) {
+int signOfSum(const std::vector<double>& terms) {
   std::vector<double> parts;  // none overlaps another, the largest last
   for (double x : terms) {
     std::vector<double> next;
