@@ -114,7 +114,8 @@ void Setup::buildObstacles(const Registry& registry) {
     std::copy_n(body.lo, 3, boxes[o].lo);
     std::copy_n(body.hi, 3, boxes[o].hi);
     still_.bodies[o] = static_cast<std::int32_t>(first + o);
-    still_.bounds.push_back({body.inverse, obstacle.shape->coreBox(), body.tree, baseline::isSolid(*body.tree)});
+    still_.bounds.push_back({body.inverse, obstacle.shape->coreBox(), body.tree, baseline::isSolid(*body.tree),
+                             body.tree->upper != nullptr});
   }
   still_.tree = widen(buildBoxTree(boxes));
 }

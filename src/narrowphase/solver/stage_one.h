@@ -299,7 +299,7 @@ inline void StageOne::cullObstacles(int mover, Buffer<Entry>& open) {
     const PairId pair = problem().scenePair(mover, met[i].obstacle);
     if (problem().isAllowed(pair)) continue;
     const engine::StillBounds& obstacle = problem().still_bounds[met[i].obstacle];
-    if (obstacle.tree->upper) {
+    if (obstacle.entered) {
       SweptLss seen;
       seeFrom(obstacle.inverse, mover_lss_[mover], seen);
       cullPatches(pair, *obstacle.tree, seen, met[i].mask, open);
