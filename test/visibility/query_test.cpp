@@ -144,8 +144,8 @@ Eigen::Vector3d around(double angle, double radius, double z) {
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
-/// A mesh of cubes all around the arm's way, one object: stage 1 goes into it and leaves nothing to stage 2 until a cube
-/// is in the way.
+/// A mesh of cubes all around the arm's way, one object: stage 1 goes into it and leaves nothing to stage 2 until a
+/// cube is in the way.
 TEST_F(ArmAmidBalls, MeshAllAroundIsLeftOutUntilOneOfItsCubesIsInTheWay) {
   std::vector<Eigen::Vector3d> centers;
   for (int i = 0; i < 40; ++i) {
