@@ -760,4 +760,28 @@ TEST(LargeBodies, AreSearchedOnceForEveryPair) {
   EXPECT_LT(work[1], 2 * work[0]) << work[0];
 }
 
+/// Work in stage 1 counts: a budget ends a query that stage 1 alone would decide.
+TEST(LargeBodies, BudgetEndsStageOne) {
+  Random random(2);
+  Large slope;
+  slope.kind = Large::terrain;
+  drawTriangles(random, 3000, slope);
+  for (Vector3d& v : slope.mesh.vertices) v[2] = 0.1 * v[0];
+  Cart cart(std::make_shared<fcl::Sphered>(0.05));
+  cart.manager->registerObject(object(slope.mesh.surface()), "slope");
+  cart.manager->setup();
+  CertifiedRequest request;
+  const CertifiedResult free = cart.run(-0.9, -0.8, request);
+  ASSERT_TRUE(free.isFree());
+  ASSERT_EQ(free.statistics.pairs_after_culling, 0u);
+  ASSERT_GT(free.statistics.node_tests, 1u);
+  request.work_budget = free.statistics.node_tests;
+  EXPECT_TRUE(cart.run(-0.9, -0.8, request).isFree());
+  request.work_budget = 1;
+  const CertifiedResult ended = cart.run(-0.9, -0.8, request);
+  EXPECT_EQ(ended.status, Status::undecided);
+  EXPECT_EQ(ended.t_lower, 0);
+  EXPECT_LT(ended.statistics.node_tests, free.statistics.node_tests);
+}
+
 }  // namespace large_bodies_test

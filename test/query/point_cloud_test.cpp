@@ -10,7 +10,6 @@
 #include <iostream>
 #include <limits>
 #include <map>
-#include <random>
 #include <string>
 
 #include <fcl/geometry/shape/box.h>
@@ -19,6 +18,7 @@
 #include <fcl/narrowphase/continuous_collision_object.h>
 #include <gtest/gtest.h>
 
+#include "../support/random_placing.h"
 #include "fcl_artic/fcl_artic.h"
 
 namespace point_cloud_test {
@@ -28,11 +28,8 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using namespace fcl_artic;
+using test::Random;
 
-std::mt19937_64 random_engine(5);
-double uniform(double lower, double upper) {
-  return std::uniform_real_distribution<double>(lower, upper)(random_engine);
-}
 Isometry3d at(const Vector3d& x) {
   return Isometry3d(Eigen::Translation3d(x));
 }
@@ -63,11 +60,11 @@ struct Cloud {
   std::vector<Vector3d> points;
   std::vector<double> radii;
 };
-Cloud randomCloud(int n, double spread, bool one_radius) {
+Cloud randomCloud(Random& random, int n, double spread, bool one_radius) {
   Cloud cloud;
   while (static_cast<int>(cloud.points.size()) < n) {
-    cloud.points.emplace_back(uniform(-spread, spread), uniform(-spread, spread), uniform(-spread, spread));
-    cloud.radii.push_back(one_radius ? 0.01 : std::pow(10, uniform(-3, -1.3)));
+    cloud.points.push_back(random.box(spread));
+    cloud.radii.push_back(one_radius ? 0.01 : random.logUniform(1e-3, 0.05));
   }
   if (one_radius) cloud.radii.assign(1, 0.01);
   return cloud;
@@ -75,10 +72,11 @@ Cloud randomCloud(int n, double spread, bool one_radius) {
 
 /// Many motions amid a cloud and amid the same balls one by one; and the distance of each point at samples.
 TEST(PointCloud, SaysWhatItsBallsSayOneByOne) {
+  Random random(1);
   int contacts = 0, free = 0, sampled = 0;
   for (int scene = 0; scene < 24; ++scene) {
     const auto tree = armTree();
-    const Cloud cloud = randomCloud(scene % 6 == 0 ? 1 : 200, 1.3, scene % 2 == 0);
+    const Cloud cloud = randomCloud(random, scene % 6 == 0 ? 1 : 200, 1.3, scene % 2 == 0);
     const Isometry3d pose = at({0.1, -0.2, 0.05}) * Eigen::AngleAxisd(0.3 * scene, Vector3d(1, 2, 3).normalized());
     const PointCloud geometry(cloud.points, cloud.radii);
     ArticulatedCollisionManager whole(tree), single(tree);
@@ -93,8 +91,8 @@ TEST(PointCloud, SaysWhatItsBallsSayOneByOne) {
     whole.setup();
     single.setup();
     for (int i = 0; i < 40; ++i) {
-      Vector3d q0(uniform(-3, 3), uniform(-1.5, 1.5), uniform(0, 0.2)),
-          dq(uniform(-1, 1), uniform(-1, 1), uniform(-0.2, 0.2));
+      Vector3d q0 = Vector3d(0, 0, 0.1) + Vector3d(3, 1.5, 0.1).cwiseProduct(random.box(1)),
+               dq = Vector3d(1, 1, 0.2).cwiseProduct(random.box(1));
       const JointMotion motion = JointMotion::linear(*tree, q0, q0 + dq);
       for (const Method method : {Method::standard, Method::redon2004}) {
         CertifiedRequest request;
@@ -217,20 +215,21 @@ TEST(PointCloud, CertificatesSayThatTheyCannotStateIt) {
 
 /// Stage 2 proves of a cloud what it proves of the balls.
 TEST(PointCloud, IsCulledByVisibility) {
+  Random random(2);
   const auto tree = armTree();
   ArticulatedCollisionManager manager(tree);
   bindBoxes(manager);
   std::vector<Vector3d> points;
   for (int i = 0; i < 4000; ++i) {
-    const double turn = uniform(-3, 3);
-    points.emplace_back(0.75 * std::cos(turn), 0.75 * std::sin(turn), uniform(0.1, 0.4));
+    const double turn = random.uniform(-3, 3);
+    points.emplace_back(0.75 * std::cos(turn), 0.75 * std::sin(turn), random.uniform(0.1, 0.4));
   }
   manager.registerObject(object(std::make_shared<PointCloud>(points, 0.005)));
   manager.setup();
   std::uint64_t pairs = 0, free = 0, contacts = 0;
   for (int i = 0; i < 60; ++i) {
-    const Vector3d q0(uniform(-3, 3), uniform(-0.3, 0.1), 0),
-        q1 = q0 + Vector3d(uniform(-1, 1), uniform(-0.6, 0.3), 0.1);
+    const Vector3d q0 = Vector3d(0, -0.1, 0) + Vector3d(3, 0.2, 0).cwiseProduct(random.box(1)),
+                   q1 = q0 + Vector3d(0, -0.15, 0.1) + Vector3d(1, 0.45, 0).cwiseProduct(random.box(1));
     CertifiedRequest request;
     CertifiedResult off, on;
     const JointMotion motion = JointMotion::linear(*tree, q0, q1);
@@ -313,19 +312,20 @@ bool liesIn(const Vector3d& p, double r, const Vector3d& c, double R) {
 /// Faults to put in: the radius not rounded up; the middle of the cube in place of the points'; one axis of two left
 /// out.
 TEST(PointCloud, ThinnedHoldsEveryBall) {
+  Random random(3);
   std::size_t balls = 0, thinned_balls = 0, tight = 0;
   for (int round = 0; round < 40; ++round) {
     const bool many = round % 20 == 0;  // over threads; in voxels that hold several
-    const double scale = std::pow(10, uniform(-3, 3)), exponent = uniform(many ? -0.7 : -2, 0.5);
-    const double voxel = std::max(1e-6, scale * std::pow(10, exponent));
-    const Vector3d place = round % 3 == 0 ? Vector3d(uniform(-1e5, 1e5), uniform(-1e5, 1e5), 0) : Vector3d(0, 0, 0);
+    const double scale = random.logUniform(1e-3, 1e3);
+    const double voxel = std::max(1e-6, scale * random.logUniform(many ? 0.2 : 0.01, 3));
+    const Vector3d place = round % 3 == 0 ? random.box(1e5) : Vector3d(0, 0, 0);
     std::vector<Vector3d> points;
     std::vector<double> radii;
     const int n = many ? 20000 : 300;
     for (int i = 0; i < n; ++i) {
-      points.push_back(place + scale * Vector3d(uniform(-1, 1), uniform(-1, 1), round % 2 ? 0 : uniform(-1, 1)));
+      points.push_back(place + Vector3d(scale, scale, round % 2 ? 0 : scale).cwiseProduct(random.box(1)));
       if (i % 20 == 19) points.back() = points[static_cast<std::size_t>(i - 7)];
-      radii.push_back(round % 4 == 1 ? 1e-12 : scale * std::pow(10, uniform(-4, -1)));
+      radii.push_back(round % 4 == 1 ? 1e-12 : scale * random.logUniform(1e-4, 0.1));
     }
     if (round % 2) radii.resize(1);
     const PointCloud cloud(points, radii);
@@ -368,10 +368,11 @@ TEST(PointCloud, ThinnedHoldsEveryBall) {
 
 /// A motion that is free amid a thinned cloud is free amid the cloud: the queries' own view.
 TEST(PointCloud, FreeOfTheThinnedIsFree) {
+  Random random(4);
   const auto tree = armTree();
   int free = 0, contacts = 0;
   for (int scene = 0; scene < 12; ++scene) {
-    const Cloud cloud = randomCloud(400, 1.3, scene % 2 == 0);
+    const Cloud cloud = randomCloud(random, 400, 1.3, scene % 2 == 0);
     const auto all = std::make_shared<PointCloud>(cloud.points, cloud.radii);
     ArticulatedCollisionManager whole(tree), fewer(tree);
     for (ArticulatedCollisionManager* manager : {&whole, &fewer}) {
@@ -380,8 +381,8 @@ TEST(PointCloud, FreeOfTheThinnedIsFree) {
       manager->setup();
     }
     for (int i = 0; i < 100; ++i) {
-      const Vector3d q0(uniform(-3, 3), uniform(-1.5, 1.5), uniform(0, 0.2));
-      const Vector3d q1 = q0 + 0.1 * Vector3d(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1));
+      const Vector3d q0 = Vector3d(0, 0, 0.1) + Vector3d(3, 1.5, 0.1).cwiseProduct(random.box(1));
+      const Vector3d q1 = q0 + random.box(0.1);
       const bool free_of_fewer = fewer.isFree(q0, q1), free_of_all = whole.isFree(q0, q1);
       if (free_of_fewer) EXPECT_TRUE(free_of_all);
       free += free_of_fewer;

@@ -6,7 +6,6 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -20,6 +19,7 @@
 #include <fcl/geometry/shape/sphere.h>
 #include <gtest/gtest.h>
 
+#include "../support/random_placing.h"
 #include "fcl_artic/fcl_artic.h"
 
 namespace remove_self_test {
@@ -30,20 +30,8 @@ using Eigen::Isometry3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using namespace fcl_artic;
+using test::Random;
 
-std::mt19937_64 random_engine(11);
-double uniform(double lower, double upper) {
-  return std::uniform_real_distribution<double>(lower, upper)(random_engine);
-}
-Vector3d within(double size) {
-  return {uniform(-size, size), uniform(-size, size), uniform(-size, size)};
-}
-Isometry3d anyPose(double reach) {
-  Isometry3d M = Isometry3d::Identity();
-  M.linear() = Eigen::AngleAxisd(uniform(0, 3), within(1).normalized()).toRotationMatrix();
-  M.translation() = within(reach);
-  return M;
-}
 std::shared_ptr<fcl::CollisionObjectd> object(const std::shared_ptr<fcl::CollisionGeometryd>& geometry) {
   return std::make_shared<fcl::CollisionObjectd>(geometry);
 }
@@ -106,7 +94,7 @@ std::vector<std::array<Vector3d, 3>> octahedron(const Vector3d& size) {
   return triangles;
 }
 
-std::vector<Kind> kinds() {
+std::vector<Kind> kinds(Random& random) {
   std::vector<Kind> all;
   const double a = 0.2, b = 0.07, c = 0.11;
   all.push_back({"box", std::make_shared<fcl::Boxd>(2 * a, 2 * b, 2 * c),
@@ -144,7 +132,7 @@ std::vector<Kind> kinds() {
   all.push_back({"convex", std::make_shared<fcl::Convexd>(vertices, 0, std::make_shared<std::vector<int>>()),
                  [=](const Vector3d& x) { return isInside(x) ? 0 : toSurface(x); }});
   std::vector<Vector3d> points;
-  for (int i = 0; i < 300; ++i) points.push_back(within(a));
+  for (int i = 0; i < 300; ++i) points.push_back(random.box(a));
   all.push_back({"cloud", std::make_shared<PointCloud>(points, 0.02), [=](const Vector3d& x) {
                    double nearest = std::numeric_limits<double>::infinity();
                    for (const Vector3d& p : points) nearest = std::min(nearest, (x - p).norm());
@@ -174,12 +162,13 @@ Isometry3d toolAt(const Vector3d& q) {
 // geometry, bound or attached. Many points lie within 1e-6 to 1e-13 m of the padding. Faults to put in: the pose's
 // error added to the padding, attached objects left out, triangles asked for corners only, the frame not inverted.
 TEST(RemoveSelf, DropsWhatIsWithinThePadding) {
+  Random random(11);
   int dropped = 0, kept = 0, close = 0;
-  for (const Kind& kind : kinds()) {
+  for (const Kind& kind : kinds(random)) {
     for (int round = 0; round < 12; ++round) {
-      const Vector3d q(uniform(-3, 3), uniform(-1.5, 1.5), uniform(-0.3, 0.3));
-      const Isometry3d offset = anyPose(0.2), frame = round % 3 ? anyPose(2) : Isometry3d::Identity();
-      const double padding = round % 4 == 0 ? 0 : uniform(0.001, 0.1);
+      const Vector3d q = Vector3d(3, 1.5, 0.3).cwiseProduct(random.box(1));
+      const Isometry3d offset = random.pose(0.2), frame = round % 3 ? random.pose(2) : Isometry3d::Identity();
+      const double padding = round % 4 == 0 ? 0 : random.uniform(0.001, 0.1);
       ArticulatedCollisionManager manager(armTree());
       const auto part = object(kind.geometry);
       if (round % 2) {
@@ -195,10 +184,10 @@ TEST(RemoveSelf, DropsWhatIsWithinThePadding) {
       std::vector<Vector3d> points;
       std::vector<double> distances;
       for (int i = 0; i < 2000; ++i) {
-        Vector3d x = within(0.35);
+        Vector3d x = random.box(0.35);
         if (i % 2) {  // moved next to the border: along the way to a point within, by bisection
           Vector3d in = kind.name == "mesh" ? Vector3d(0.2, 0, 0) : kind.name == "cloud" ? x : Vector3d(0, 0, 0);
-          const double goal = padding + (i % 4 == 1 ? 1 : -1) * std::pow(10, uniform(-13, -6));
+          const double goal = padding + (i % 4 == 1 ? 1 : -1) * random.logUniform(1e-13, 1e-6);
           if (kind.distance(in) < goal && kind.distance(x) > goal) {
             for (int k = 0; k < 60; ++k) {
               const Vector3d middle = 0.5 * (in + x);
@@ -244,12 +233,13 @@ TEST(RemoveSelf, DropsWhatIsWithinThePadding) {
 
 // Points one by one, and all of them over threads.
 TEST(RemoveSelf, IsTheSameOverThreads) {
+  Random random(12);
   ArticulatedCollisionManager manager(armTree());
-  for (const Kind& kind : kinds()) manager.bind("lower", object(kind.geometry), anyPose(0.5));
+  for (const Kind& kind : kinds(random)) manager.bind("lower", object(kind.geometry), random.pose(0.5));
   manager.setup();
   const Vector3d q(0.3, -0.4, 0.1);
   std::vector<Vector3d> points;
-  for (int i = 0; i < 100000; ++i) points.push_back(within(1.5));
+  for (int i = 0; i < 100000; ++i) points.push_back(random.box(1.5));
   const std::vector<std::uint8_t> all = manager.pointsOnSelf(points, q, 0.02);
   std::size_t differ = 0;
   for (std::size_t i = 0; i < points.size(); i += 50) {

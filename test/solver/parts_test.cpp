@@ -401,6 +401,31 @@ TEST(HullSimplices, AreOfThePairItsNodeAndTheQuery) {
   EXPECT_EQ(simplices.of(PairId{3}, 0).n, 0);
 }
 
+TEST(SweptRanges, AreOfOneBatchAndOneQueryAndOfTheirLanes) {
+  TwoBalls world;
+  world.round[1].tree.outer = world.round[1].tree.pieces;
+  world.asPair().begin();
+  const Piece& ball = world.round[0].tree.pieces[0];
+  const Vec3 along(0, 0, 1);
+  std::uint64_t looks = 0;
+  SweptRanges ranges;
+  const auto whole = [&] { return world.motions.of(TwoBalls::kPair, world.task.whole); };
+  const unsigned apart = ranges.add(whole(), ball, along, kAllLanes);
+  EXPECT_NE(apart, 0u);
+  EXPECT_EQ(apart & TwoBalls::touching(), 0u);
+  EXPECT_EQ(ranges.separate(whole(), ball, kAllLanes, looks), apart);
+  EXPECT_EQ(ranges.separate(whole(), ball, 1, looks), 1u);
+  // Another batch, in which the balls touch where they were apart before.
+  const TimeBatch middle = TimeBatch::partsOf(TwoBalls::kFirst, TwoBalls::kLast - TwoBalls::kFirst);
+  EXPECT_EQ(ranges.separate(world.motions.of(TwoBalls::kPair, middle), ball, kAllLanes, looks), 0u);
+  // Only the lanes that were asked for are known.
+  EXPECT_EQ(ranges.add(whole(), ball, along, 1), 1u);
+  EXPECT_EQ(ranges.separate(whole(), ball, kAllLanes, looks), 1u);
+  // The same pair and batch, by their number, may be those of another query.
+  ranges.forget();
+  EXPECT_EQ(ranges.separate(whole(), ball, kAllLanes, looks), 0u);
+}
+
 TEST(PoseProofs, ProveContactWhereItIs) {
   TwoBalls world;
   world.asPair().query.any = true;
