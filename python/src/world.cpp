@@ -585,9 +585,9 @@ void bindQueries(py::class_<World>& world) {
           "their own), are left out.",
           py::arg("q0"), py::arg("q1") = py::none())
       .def("remove_self", &removeSelf,
-           "Drops points, as a sensor has seen them, that lie in or within `padding` of what links carry at q: the "
-           "other\n"
-           "rows, in their order, and how many were dropped. Rows that are not finite stay. `pose` is that of the\n"
+           "Drops points, as a sensor has seen them, that lie in or within `padding` of what links carry at q: the\n"
+           "other rows, in their order, and how many were dropped. Rows that are not finite stay. `pose` is that of "
+           "the\n"
            "points' frame. A mesh is its surface, unless it is a solid.",
            py::arg("points"), py::arg("q"), py::arg("padding") = 0.0, py::kw_only(), py::arg("pose") = py::none())
       .def(

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "geometry/thinning.h"
+#include "numerics/constants.h"
 #include "numerics/shown.h"
 
 namespace fcl_artic {
@@ -21,7 +22,7 @@ void refuse(const std::string& why) {
 }
 
 bool isThere(const Eigen::Vector3d& x) {
-  return std::abs(x[0]) <= 1e9 && std::abs(x[1]) <= 1e9 && std::abs(x[2]) <= 1e9;  // false for NaN
+  return std::abs(x[0]) <= kFarthest && std::abs(x[1]) <= kFarthest && std::abs(x[2]) <= kFarthest;  // false for NaN
 }
 
 template <class S>
@@ -72,7 +73,7 @@ PointCloud::PointCloud(std::vector<Eigen::Vector3d> points, std::vector<double> 
     if (!isThere(points_[i])) refuse("point " + std::to_string(i) + " is not finite or beyond 1e9 m");
   }
   for (std::size_t i = 0; i < radii_.size(); ++i) {
-    if (!(radii_[i] > 0) || !(radii_[i] <= 1e9)) {
+    if (!(radii_[i] > 0) || !(radii_[i] <= kFarthest)) {
       refuse((radii_.size() == 1 ? "its radius" : "the radius of point " + std::to_string(i)) + " is " +
              shown(radii_[i]) + ", not a positive number of metres");
     }

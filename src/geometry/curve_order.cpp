@@ -73,11 +73,6 @@ struct CurveCells {
   double lo[3], scale;
 };
 
-/// [begin, end) of equal shares of a range.
-std::size_t shareBegin(std::size_t size, std::size_t share, std::size_t shares) {
-  return size / shares * share + std::min(size % shares, share);
-}
-
 /// Sorts by keys of 3 kBits bits, digit by digit; equal ones stay as they are.
 void sortByKey(CurvePlace* places, std::size_t size, int threads) {
   constexpr std::size_t kDigits = std::size_t{1} << kBits;
@@ -87,10 +82,9 @@ void sortByKey(CurvePlace* places, std::size_t size, int threads) {
   CurvePlace *from = places, *to = const_cast<CurvePlace*>(scratch.data());
   for (int shift = 0; shift < 3 * kBits; shift += kBits) {
     const auto digit = [&](const CurvePlace& place) { return place.key >> shift & (kDigits - 1); };
-    parallelFor(shares, threads, [&](std::size_t s) {
+    parallelShares(size, shares, [&](std::size_t s, std::size_t begin, std::size_t end) {
       next[s].fill(0);
-      const std::size_t end = shareBegin(size, s + 1, shares);
-      for (std::size_t i = shareBegin(size, s, shares); i < end; ++i) ++next[s][digit(from[i])];
+      for (std::size_t i = begin; i < end; ++i) ++next[s][digit(from[i])];
     });
     std::uint32_t sum = 0;
     bool one_digit = false;  // for all
@@ -104,10 +98,9 @@ void sortByKey(CurvePlace* places, std::size_t size, int threads) {
       one_digit = one_digit || sum - before == size;
     }
     if (one_digit) continue;
-    parallelFor(shares, threads, [&](std::size_t s) {
+    parallelShares(size, shares, [&](std::size_t s, std::size_t begin, std::size_t end) {
       auto& at = next[s];
-      const std::size_t end = shareBegin(size, s + 1, shares);
-      for (std::size_t i = shareBegin(size, s, shares); i < end; ++i) to[at[digit(from[i])]++] = from[i];
+      for (std::size_t i = begin; i < end; ++i) to[at[digit(from[i])]++] = from[i];
     });
     std::swap(from, to);
   }
@@ -119,10 +112,8 @@ void sortByKey(CurvePlace* places, std::size_t size, int threads) {
 CurveOrder::CurveOrder(PointsAt points, std::size_t size, int threads) : points_(points), places_(size) {
   FCL_ARTIC_ASSERT(size > 0 && size <= static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()));
   if (size < kManyPoints) threads = 1;
-  const std::size_t shares = threadsFor(threads);
-  parallelFor(shares, threads, [&](std::size_t s) {
-    const std::size_t end = shareBegin(size, s + 1, shares);
-    for (std::size_t i = shareBegin(size, s, shares); i < end; ++i) places_[i] = {0, static_cast<std::uint32_t>(i)};
+  parallelShares(size, threadsFor(threads), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) places_[i] = {0, static_cast<std::uint32_t>(i)};
   });
   layCells(all(), threads);
 }
@@ -134,9 +125,8 @@ void CurveOrder::layCells(Range range, int threads) {
   const std::size_t size = range.size(), shares = threadsFor(threads);
   std::vector<PlaceBox> boxes(shares);
   const auto inShares = [&](const auto& act) {
-    parallelFor(shares, threads, [&](std::size_t s) {
-      const std::size_t end = shareBegin(size, s + 1, shares);
-      for (std::size_t i = shareBegin(size, s, shares); i < end; ++i) act(s, places[i]);
+    parallelShares(size, shares, [&](std::size_t s, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) act(s, places[i]);
     });
   };
   inShares([&](std::size_t s, const CurvePlace& place) { boxes[s].add(points_[place.number]); });

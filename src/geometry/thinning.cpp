@@ -83,16 +83,15 @@ class VoxelTable {
 
 ThinnedBalls thin(const std::vector<Vector3d>& points, const std::vector<double>& radii, double voxel) {
   const int threads = points.size() < kManyToThin ? 1 : 0;
-  const std::size_t shares = threadsFor(threads), per_share = points.size() / shares + 1;
+  const std::size_t shares = threadsFor(threads);
   const auto cellOf = [per_voxel = 1 / voxel](const Vector3d& point) -> VoxelCell {
     const Eigen::Array3d x = point.array() * per_voxel;
     const VoxelCell towards_zero = x.cast<std::int64_t>();
     return towards_zero - (x < towards_zero.cast<double>()).cast<std::int64_t>();
   };
   std::vector<std::uint64_t> hashes(points.size());
-  parallelFor(shares, threads, [&](std::size_t s) {
-    const std::size_t end = std::min(points.size(), (s + 1) * per_share);
-    for (std::size_t i = s * per_share; i < end; ++i) hashes[i] = VoxelTable::hash(cellOf(points[i]));
+  parallelShares(points.size(), shares, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) hashes[i] = VoxelTable::hash(cellOf(points[i]));
   });
   // Each thread has the voxels of some hashes, with all of their points: nothing is merged, and no voxel depends on the
   // number of threads.

@@ -71,4 +71,11 @@ void parallelFor(std::size_t n, int most_threads, const F& f) {
 #endif
 }
 
+/// Calls f(share, begin, end) for each of `shares` equal shares of [0, n): what each thread does by itself.
+template <class F>
+void parallelShares(std::size_t n, std::size_t shares, const F& f) {
+  const auto begin = [&](std::size_t share) { return n / shares * share + std::min(n % shares, share); };
+  parallelFor(shares, static_cast<int>(shares), [&](std::size_t share) { f(share, begin(share), begin(share + 1)); });
+}
+
 }  // namespace fcl_artic

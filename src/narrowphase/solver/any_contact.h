@@ -44,8 +44,10 @@ class AnyContact : PartOfSolver {
 
   bool tryLikely();
   /// Hulls of a pair overlap, or so it seems, in the middles of these lanes of [0, 1].
-  void guessOverlap(PairId pair, unsigned lanes) { overlap_guesses_.push({pair, 0, 0, lanes}); }
-  void guessOverlap(const Entry& e, unsigned lanes) { overlap_guesses_.push({e.pair, e.a, e.b, lanes}); }
+  /// @param node_a  the node of body A: the root, or a patch.
+  void guessOverlap(PairId pair, unsigned lanes, std::int32_t node_a = 0) {
+    overlap_guesses_.push({pair, node_a, 0, lanes});
+  }
   void forgetOverlaps() { overlap_guesses_.clear(); }
   bool tryObstacle(PairId pair, int lane, const Vec3& near, bool thin);
   void considerLinks(PairId pair, Lanes square, double radii);
@@ -169,16 +171,11 @@ inline bool AnyContact::tryPatch(const Entry& e) {
 inline const Buffer<std::int32_t>& AnyContact::deepestFirst(const Buffer<Entry>& open) {
   order_.clear();
   deepest_first_.clear();
-  bool any = pose_guesses_.size() > 0;
-  for (int i = 0; i < open.size() && !any; ++i) any = open[i].deepest >= 0;
-  if (!any) return order_;
-  constexpr double kNotDeep = 1e30;
   const auto distance = [&](int i) {
-    if (open[i].deepest >= 0) return static_cast<double>(open[i].nearness);
-    const PoseGuess* const guess = guessOf(open[i].pair);
-    return guess && guess->isDeep() ? guess->distance : kNotDeep;
+    const PoseGuess* const guess = pose_guesses_.size() ? guessOf(open[i].pair) : nullptr;
+    return guess && guess->isDeep() ? guess->distance : static_cast<double>(open[i].nearness);
   };
-  const auto isDeep = [&](int i) { return distance(i) < kNotDeep; };
+  const auto isDeep = [&](int i) { return distance(i) < static_cast<double>(kNotDeep); };
   for (int i = 0; i < open.size(); ++i) {
     if (isDeep(i)) deepest_first_.add(distance(i), i);
   }

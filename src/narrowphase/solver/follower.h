@@ -25,7 +25,7 @@ struct Candidate {
 
   Entry entry;
   Target target;
-  Piece hull_a;                   ///< of a part of body A: NodeHull
+  Piece hull_a;                   ///< of hulls: body A's, or a patch's (NodeHull)
   std::int32_t piece_a, piece_b;  ///< of a leaf pair
   std::int32_t first, count;      ///< of a lane of the first batch: its entries on PairSearch's stack
   double t_lower;                 ///< before it the pair is proven free, or is not watched
@@ -91,7 +91,7 @@ inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool in_
 
 /// The pieces of a candidate.
 inline PiecePair piecesOf(const Candidate& f, Seen seen) {
-  if (f.isHulls()) return {f.entry.a ? f.hull_a : *seen->a().outer, *seen->b().outer};
+  if (f.isHulls()) return {f.hull_a, *seen->b().outer};
   return {seen->a().pieces[f.piece_a], seen->b().pieces[f.piece_b]};
 }
 
@@ -321,8 +321,7 @@ inline bool Follower::prove(Candidate& f) {
 inline void Follower::proveBelowHulls(Candidate& f) {
   if (!f.have_normal) return;
   const TreeView &A = *body(problem().parts(f.entry.pair).a).tree, &B = *body(problem().parts(f.entry.pair).b).tree;
-  const double radii = (f.entry.a ? f.hull_a : *A.outer).radius + B.outer->radius;
-  if (radii > f.speed * query().tolerance_time) return;
+  if (f.hull_a.radius + B.outer->radius > f.speed * query().tolerance_time) return;
   Candidate below = f;
   below.target = Candidate::Target::leafPair;
   below.piece_a = pieceAtWitness(A, f.simplex, true, f.entry.a);

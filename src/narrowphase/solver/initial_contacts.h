@@ -68,9 +68,9 @@ inline bool InitialContacts::mayIgnore(PairId pair) const {
 
 inline void InitialContacts::collect(const Buffer<Entry>& open) {
   const TimeBatch at_start = TimeBatch::around(0);
-  for (int i = 0; i < open.size(); ++i) {
+  for (int i = 0; i < open.size(); i = endOfPair(open, i)) {
     const PairId pair = open[i].pair;
-    if ((i > 0 && open[i - 1].pair == pair) || !mayIgnore(pair)) continue;  // (patches of one body follow each other)
+    if (!mayIgnore(pair)) continue;
     horizon_.setBatch(at_start);
     if (traversal_.blockedLanes(motions_.of(pair, at_start), 1) || containment_.isContainedAtStart(pair)) {
       contacts_.ignore(pair, firstFreeTime(pair, 0, 1));

@@ -331,7 +331,7 @@ inline void PairSearch::testHulls(Buffer<Entry>& open, const StageOne& stage_one
         const Traversal::HullTest test = traversal_.hullsMayTouch(seen, e, suspect, {true, stage_one.direction(e)});
         e.mask = test.mask;
         e.within = test.within;
-        if (test.overlaps) any_.guessOverlap(e, test.overlaps);
+        if (test.overlaps) any_.guessOverlap(e.pair, test.overlaps, e.a);
         if (e.mask && !horizon_.isOver()) any_.tryLinks(e);
       }
       horizon_.mustEnd();
@@ -348,7 +348,7 @@ inline void PairSearch::run(const Buffer<Entry>& open) {
   if (!query().every_pair) return search(open, 0, open.size());
   for (int i = 0; i < open.size() && !task_.ended();) {
     const int before = contacts_.size(), begin = i;
-    for (++i; i < open.size() && open[i].pair == open[begin].pair;) ++i;  // patches of one body follow each other
+    i = endOfPair(open, begin);
     horizon_.dropSuspicion();
     setBatch(whole());
     search(open, begin, i);
@@ -493,7 +493,7 @@ inline void PairSearch::followHulls(const Selection& of, const Window& window, u
     f.target = hulls ? Target::hulls : leaves && f.count == 1 ? Target::leafPair : Target::subtrees;
     if (hulls) {
       f.simplex = traversal_.simplexOf(f.entry);
-      if (f.entry.a) f.hull_a = *NodeHull(*body(problem().parts(pair).a).tree, f.entry.a);
+      f.hull_a = *NodeHull(*body(problem().parts(pair).a).tree, f.entry.a);
     }
     if (f.t_lower >= window.end() ||
         (f.target != Target::subtrees && follower_.followToRoot(f, window.end(), false, first_lanes))) {

@@ -189,6 +189,13 @@ inline unsigned StageOne::lssMayTouch(int mover, int obstacle_number, unsigned m
   return mask;
 }
 
+/// The one of some lanes in which a segment is nearest; the middle one of several in which it is as near.
+inline int nearestLane(Lanes square, unsigned lanes) {
+  double least = square[__builtin_ctz(lanes)];
+  for (int k = 0; k < kLanes; ++k) least = lanes >> k & 1 ? min(least, square[k]) : least;
+  return middleLane(lanes & ~greater(square, Lanes(least)));
+}
+
 /// If a line swept sphere is deep in a solid, contact is suspected there, and later lanes are put off. If any contact
 /// will do, it is looked for at once instead; poses are kept as guesses if the sphere's segment is very near the solid.
 inline void StageOne::expectContact(PairId pair, int mover, const engine::StillBounds& obstacle, unsigned mask,
@@ -199,10 +206,7 @@ inline void StageOne::expectContact(PairId pair, int mover, const engine::StillB
   const unsigned deep = nearer(kDeep);
   if (!deep || query().every_pair || !contacts_.watching()) return;
   if (!query().any) return horizon_.suspect(whole().at[__builtin_ctz(deep)]);
-  // Where the segment is nearest; the middle one of several lanes in which it is as near.
-  double least = square[__builtin_ctz(deep)];
-  for (int k = 0; k < kLanes; ++k) least = deep >> k & 1 ? min(least, square[k]) : least;
-  const int lane = middleLane(deep & ~greater(square, Lanes(least)));
+  const int lane = nearestLane(square, deep);
   const bool thin = widthOfRod(obstacle.tree->pieces[0]) < kThinSolid * radius;
   if (any_.tryObstacle(pair, lane, laneOf(nearest.point, lane), thin)) return;
   if (const unsigned lanes = nearer(kVeryDeep)) any_.guessOverlap(pair, lanes);
@@ -256,7 +260,7 @@ inline void StageOne::cullPatches(PairId pair, const TreeView& tree, const Swept
   for (int i = first; i < all_open.size(); ++i) {
     if (all_open[i].deepest >= 0 && (best < 0 || all_open[i].nearness < all_open[best].nearness)) best = i;
   }
-  if (best >= 0) any_.tryPatch(all_open[best]);
+  if (best >= 0 && !any_.tryPatch(all_open[best])) all_open[best].deepest = -1;  // it is not tried again
 }
 
 /// Appends a node of a large body. If the link is deep in it, contact is suspected there, or, if any contact will do,
@@ -270,10 +274,9 @@ inline void StageOne::openPatch(const Entry& patch, double radius, const Nearest
   directions_.push(nearest.direction);
   if (!deep || query().every_pair || !contacts_.watching()) return;
   if (!query().any) return horizon_.suspect(whole().at[__builtin_ctz(deep)]);
-  double least = nearest.square[__builtin_ctz(deep)];
-  for (int k = 0; k < kLanes; ++k) least = deep >> k & 1 ? min(least, nearest.square[k]) : least;
-  entry.deepest = static_cast<std::int8_t>(middleLane(deep & ~greater(nearest.square, Lanes(least))));
-  entry.nearness = static_cast<float>(sqrt(least) / radius);
+  const int lane = nearestLane(nearest.square, deep);
+  entry.deepest = static_cast<std::int8_t>(lane);
+  entry.nearness = static_cast<float>(sqrt(nearest.square[lane]) / radius);
 }
 
 /// The line swept sphere of the link B of a pair of two bodies that move, seen from A's tree frame, where A stands
@@ -288,8 +291,7 @@ inline void StageOne::sweepInPartner(PairId pair, const double* lss, SweptLss& s
     s.radius = max(s.radius, lss[6] + seen->seePoint(p, s.end[end]));
     for (const Vec3Lanes& c : s.end[end].c) sizes = sizes + abs(c[0]) + abs(c[1]) + abs(c[2]);
   }
-  const Vec3Lanes e = s.end[1].c[0] - s.end[0].c[0];
-  s.per_square = Lanes(1.0) / max(dot(e, e), Lanes(kLeastSquare));
+  s.measureSegment();
   s.sizes = maxLane(sizes) + s.radius;
 }
 
@@ -407,9 +409,7 @@ inline void StageOne::cull(Buffer<Entry>& open) {
       }
     }
   }
-  for (int i = 0; i < open.size(); ++i) {
-    statistics().pairs_after_culling += i == 0 || open[i].pair != open[i - 1].pair;
-  }
+  for (int i = 0; i < open.size(); i = endOfPair(open, i)) ++statistics().pairs_after_culling;
 }
 
 /// A line swept sphere over one lane: both ends' Bernstein points.
@@ -449,39 +449,43 @@ inline void StageOne::takeAdvice(const engine::Advisor& advisor, Traversal& trav
   candidates_.clear();
   swept_links_.resize(kLanes * (problem().num_movers + open.size()));
   int previous = -1, num_swept = problem().num_movers;
-  for (int i = 0; i < open.size(); ++i) {
-    Entry e = open[i];
-    for (; i + 1 < open.size() && open[i + 1].pair == e.pair; ++i) e.mask |= open[i + 1].mask;  // patches of one body
+  const auto lanesOf = [&](int i) {
+    unsigned lanes = 0;
+    for (const int end = endOfPair(open, i); i < end; ++i) lanes |= open[i].mask;
+    return lanes;
+  };
+  for (int i = 0; i < open.size(); i = endOfPair(open, i)) {
+    const Entry& e = open[i];
+    const unsigned lanes = lanesOf(i);
     const double margin = query().margins.of(e.pair);
     if (problem().isScenePair(e.pair)) {
       const int mover = problem().moverOf(e.pair), obstacle = problem().obstacles[problem().obstacleOf(e.pair)];
       if (mover != previous) sweptInWorld(previous = mover, swept_links_.data() + kLanes * mover);
-      candidates_.push({e.pair, mover, obstacle, &body(obstacle).placement, e.mask, margin});
+      candidates_.push({e.pair, mover, obstacle, &body(obstacle).placement, lanes, margin});
       continue;
     }
     const PairParts parts = problem().parts(e.pair);
     if (!body(parts.b).tree_lss) continue;
     sweptInPartner(e.pair, body(parts.b).tree_lss, swept_links_.data() + kLanes * num_swept);
-    candidates_.push({e.pair, num_swept++, parts.a, &kWhereItStands, e.mask, margin});
+    candidates_.push({e.pair, num_swept++, parts.a, &kWhereItStands, lanes, margin});
   }
   const int asked = candidates_.size();
   if (!asked) return;
   advisor.clear(advisor.self, problem(), swept_links_.data(), candidates_.data(), asked);
   int kept = 0, next = 0;
-  for (int i = 0; i < open.size(); ++i) {
-    const PairId pair = open[i].pair;
-    const engine::CullCandidate* answer = nullptr;
-    if (next < asked && candidates_[next].pair == pair) answer = &candidates_[next++];  // it may clear parts only
-    unsigned all = 0;
-    for (; i < open.size() && open[i].pair == pair; ++i) {
+  for (int i = 0; i < open.size();) {
+    unsigned left = kAllLanes;
+    if (next < asked && candidates_[next].pair == open[i].pair) {  // it may clear parts, nothing else
+      const engine::CullCandidate& answer = candidates_[next++];
+      FCL_ARTIC_ASSERT(!(answer.lanes & ~lanesOf(i)));
+      left = answer.lanes;
+      if (left && answer.free_nodes) traversal.knowFreeNodes(answer.pair, answer.free_nodes);
+    }
+    for (const int end = endOfPair(open, i); i < end; ++i) {
       Entry e = open[i];
-      all |= e.mask;
-      if (answer) e.mask &= answer->lanes;
+      e.mask &= left;
       if (e.mask) open[kept++] = e;
     }
-    --i;
-    FCL_ARTIC_ASSERT(!answer || !(answer->lanes & ~all));
-    if (answer && (answer->lanes & all) && answer->free_nodes) traversal.knowFreeNodes(pair, answer->free_nodes);
   }
   FCL_ARTIC_ASSERT(next == asked);
   open.truncate(kept);

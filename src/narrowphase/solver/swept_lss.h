@@ -25,6 +25,12 @@ struct SweptLss {
   double radius;      ///< remainder and rounding in it
   double sizes;       ///< of all numbers that the ends are made of
   double ulps, rate;  ///< what a difference with something else rounds by: roundingPart(ulps, rate)
+
+  /// Sets per_square by the ends.
+  void measureSegment() {
+    const Vec3Lanes e = end[1].c[0] - end[0].c[0];
+    per_square = Lanes(1.0) / max(dot(e, e), Lanes(kLeastSquare));
+  }
 };
 
 /// @param motion  of the step that carries the body, seen from the world.
@@ -43,8 +49,7 @@ FCL_ARTIC_INLINE void sweepLss(const FrameMotion& motion, const Body& body, Swep
     s.radius = body.lss[6];
     s.end[end] = {{spread(p), spread(Vec3(0, 0, 0)), spread(Vec3(0, 0, 0))}};
   }
-  const Vec3Lanes e = s.end[1].c[0] - s.end[0].c[0];
-  s.per_square = Lanes(1.0) / max(dot(e, e), Lanes(kLeastSquare));
+  s.measureSegment();
   s.sizes = (f ? b.length + b.D1 * motion.d : 0) + reach + s.radius;
   s.ulps = f ? b.ulps : 0;
   s.rate = f ? b.rounding_rate * motion.d : 0;
