@@ -532,10 +532,11 @@ class Judge {
     tally.count("left by stage 1", a.statistics.pairs_after_culling > 0);
     tally.count("free, left by stage 1", a.isFree() && a.statistics.pairs_after_culling > 0);
   }
-  /// Where stage 2 has proven all pairs free, nothing is left to do. (ContactMode::any tries poses before it.)
+  /// Where stage 2 has proven all pairs free, nothing is left to do. (ContactMode::any tries poses before it. A query
+  /// that is free but for an ignored pair is solved again without it, which `repeated` says.)
   void searchesNoMore(const CertifiedResult& a) {
     const QueryStatistics& s = a.statistics;
-    if (request_.mode == ContactMode::any || !a.isFree() || s.visibility.culled == 0 ||
+    if (request_.mode == ContactMode::any || !a.isFree() || s.visibility.repeated || s.visibility.culled == 0 ||
         s.visibility.culled < s.pairs_after_culling)
       return;
     case_.tally.count("all culled by stage 2");
