@@ -42,7 +42,7 @@ struct TreeView {
   const Piece* outer = nullptr;                ///< one convex piece that holds the whole body; null: none worth having
   const Piece* parts = nullptr;                ///< convex pieces that hold what is below a node each
   const std::int16_t* part_of_node = nullptr;  ///< index into `parts`, -1: none; null: no node has one
-  const UpperNode* upper = nullptr;            ///< of a large body that stands still; null: stage 1 takes it as a whole
+  const UpperNode* upper = nullptr;            ///< of a large obstacle; null: stage 1 takes it as a whole
   std::int32_t num_nodes = 0, num_pieces = 0;
   double extent = 0;  ///< largest |p|, radii included: the size that pads scale with
 };
