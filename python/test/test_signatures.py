@@ -29,7 +29,8 @@ def functions():
                     yield f"{name}.{member}", getattr(owner, member)
 
 
-FUNCTIONS = dict(functions())
+# (Since its version 3, pybind11 has a function of its own in each class.)
+FUNCTIONS = {name: function for name, function in functions() if "._pybind11_" not in name}
 
 
 def test_all_functions_are_found():
