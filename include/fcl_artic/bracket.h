@@ -27,10 +27,10 @@ struct Bracket {
   /// With `certain`, the first contact is proven to lie at or before t_upper. Otherwise t_upper is the time of some
   /// proven contact, more than tolerance_time after t_lower, or the motion's end.
   double t_upper = 1;
-  /// True if contact is proven and, except with ContactMode::any, t_upper - t_lower <= tolerance_time. (In a
-  /// trajectory's time, rounding adds a few ulp to the width.) False if the status is not `contact`, and for touches
-  /// that stay grazes. One example is bodies that rest on each other. Another is two equal cubes as meshes that are
-  /// pushed flush face to face: their edges lie in each other's faces at every time.
+  /// True if contact is proven and, except with ContactMode::any and with tolerances of joints or poses, t_upper -
+  /// t_lower <= tolerance_time. (In a trajectory's time, rounding adds a few ulp to the width.) False if the status is
+  /// not `contact`, and for touches that stay grazes. One example is bodies that rest on each other. Another is two
+  /// equal cubes as meshes that are pushed flush face to face: their edges lie in each other's faces at every time.
   bool certain = false;
 
   /// Whether the motion is proven free of contact. False for a contact that is not certain and for `undecided`.

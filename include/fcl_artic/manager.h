@@ -15,6 +15,7 @@
 #include "fcl_artic/request.h"
 #include "fcl_artic/result.h"
 #include "fcl_artic/trajectory.h"
+#include "fcl_artic/tube.h"
 #include "fcl_artic/visibility.h"
 
 namespace fcl_artic {
@@ -202,6 +203,31 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void setMargin(const std::string& a, const std::string& b, double margin);
   /// Forgets all margins of bodies and pairs. Needs setup().
   void resetMargins();
+
+  /// Sets how far all joints may be from what a motion says, at each time: those that turn by `all.angle` rad, those
+  /// that slide by `all.length` m. Joints with a tolerance of their own keep it; joints that mimic others follow them.
+  /// Needs setup().
+  ///
+  /// If a joint, the base or an object has a tolerance, `free` holds for every path within them all (doc/PROMISE.md,
+  /// "Tolerances"), in all queries of this manager, and clearance() is that of all of these paths. If there is a
+  /// contact, CertifiedContact::q_witness shows it. Certificates and Method::redon2004 do not know tolerances: they
+  /// throw std::invalid_argument.
+  /// @throws std::invalid_argument: a number that is negative or not finite.
+  void setJointTolerances(const JointTolerance& all);
+  /// Sets the tolerance of one joint, in place of that of all joints. Needs setup().
+  /// @throws std::invalid_argument: no such joint; one that is fixed or mimics another; a length for a joint that does
+  ///   not slide or an angle for one that does not turn; a number that is negative or not finite.
+  void setJointTolerance(const std::string& joint, const JointTolerance& tolerance);
+  /// Sets how far the robot's base may be from the world's origin, where its roots stand: what calibration leaves. The
+  /// pivot is a point of the world. Links are off against obstacles, not against each other. Needs setup().
+  /// @throws std::invalid_argument: a number that is negative or not finite.
+  void setBaseTolerance(const PoseTolerance& tolerance);
+  /// Sets how far an obstacle, or an attached object, may be from the pose that it is said to have. Needs setup().
+  /// @param name  of the object; its tolerance goes when it is unregistered.
+  /// @throws std::invalid_argument: no such obstacle or attached object; a number that is negative or not finite.
+  void setObjectTolerance(const std::string& name, const PoseTolerance& tolerance);
+  /// Forgets the tolerances of joints, the base and objects. Needs setup().
+  void resetTolerances();
 
   /// Selects the culler of stage 2, culling by visibility (CertifiedRequest::visibility); null: the CPU culler, which
   /// is the default. Effective at once. The manager forgets what VisibilityMode::automatic has measured.

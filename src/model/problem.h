@@ -29,8 +29,18 @@ struct Body {
   const InnerBalls* balls = nullptr;      ///< of a link; null: none known
   const SolidSpace* space = nullptr;      ///< of a mesh that is a solid; null: any other body
   const SurfacePoints* points = nullptr;  ///< of any body, where a mesh is a solid
+  /// m: each of its points may be this far from where the body's pose puts it; times Query::strays.
+  double stray = 0;
   /// Still bodies: axis-aligned box in the world.
   double lo[3] = {}, hi[3] = {};
+};
+
+/// How far the robot's base may be from where the world's sweep begins: turned by an angle about a point of the world,
+/// then moved by a length. Times Query::strays.
+struct BaseStray {
+  double length = 0, angle = 0;  ///< m, rad
+  double pivot[3] = {};
+  bool any() const { return length > 0 || angle > 0; }
 };
 
 /// The numbers that stage 1 asks of an obstacle that stands still, in three cache lines. In a large scene most of its
@@ -100,6 +110,9 @@ struct Problem : PairNumbering {
   const std::int32_t* obstacles = nullptr;      ///< body of obstacle o
   const StillBounds* still_bounds = nullptr;    ///< of obstacle o
   const WideNode* obstacle_tree = nullptr;      ///< boxes in the world; leaf piece = obstacle; null when there is none
+  bool strays = false;                          ///< a step, a body or the base strays
+  BaseStray base;                               ///< against all that is no link
+  double largest_stray = 0;                     ///< of bodies
   /// Where a mesh is a solid: asked of each pair with one, at a pose. Null: all meshes are surfaces.
   void (*contained)(const Body& a, const Body& b, const PairPose& pose, ContainmentVerdict& found) = nullptr;
 

@@ -47,7 +47,10 @@ struct SweepStep {
   double perp = 0, axial = 0;   ///< |p| across and along the axis of a revolute parent (others: axial 0, perp |p|)
   double length = 0, ulps = 0;  ///< of C and p, as in Placement
   std::int32_t variable = -1;   ///< revolute, prismatic: the variable; slide, turn: the first of three
-  double multiplier = 1, offset = 0;      ///< q = multiplier * q_variable + offset; slide, turn: offset 0
+  double multiplier = 1, offset = 0;  ///< q = multiplier * q_variable + offset; slide, turn: offset 0
+  /// The factor may be this far from what the motion gives it: rad for a revolute step or a turn (the angle of the
+  /// rotation between both), m for the others. Times Query::strays.
+  double stray = 0;
   std::int32_t orientation = -1;          ///< turn: number of its R0 among Query::orientations; -1: none
   const BoundedSource* source = nullptr;  ///< bounded
   /// bounded: J is the inverse of the source's pose; turn: of exp([-q]) R0, that is R0^T exp([q]).
@@ -61,6 +64,7 @@ struct SweepView {
   /// Bounds hold for one batch of intervals only (a bounded motion), not for all of [0, 1].
   bool local_bounds = false;
   bool first_order = false;  ///< a bounded motion without derivatives is among the steps
+  bool strays = false;       ///< so is a step that strays
 };
 
 /// Motion of B's tree frame in A's over [tm - d, tm + d]: X(t) = X[0] + tau X[1] + tau^2 X[2] + e, tau = (t - tm) / d,

@@ -14,6 +14,7 @@ using engine::SweepView;
 /// A step under one query: bounds on its frame over the present intervals, and its variables.
 struct StepBounds : MotionBounds {
   Rates rates_parent;  ///< without its own factor when that is revolute
+  double slide_rate;   ///< of the first derivatives of all slides up to here, summed
   FactorVariables variables;
   const double* orientation;  ///< a turn's R0, null: none
 };
@@ -46,8 +47,10 @@ inline void boundSteps(const SweepView& sweep, const engine::Query& query, doubl
     b.D1 = p.D1 + r.first() * step.perp + s.first() * step.axial;
     b.D2 = p.D2 + r.second() * step.perp + s.second() * step.axial;
     b.D3 = p.D3 + r.third() * step.perp + s.third() * step.axial;
+    b.slide_rate = p.slide_rate;
     if (step.kind != StepKind::revolute && step.kind != StepKind::turn) {  // Leibniz for the slide, in that frame, too
       const double* m = factor.slide;
+      b.slide_rate += m[1];
       b.D1 += r.first() * m[0] + m[1];
       b.D2 += r.second() * m[0] + 2 * r.first() * m[1] + m[2];
       b.D3 += r.third() * m[0] + 3 * r.second() * m[1] + 3 * r.first() * m[2] + m[3];

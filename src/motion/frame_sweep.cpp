@@ -204,6 +204,19 @@ void FrameSweep::allowError(double angle, double length) {
   steps_.back().length += length;
 }
 
+void FrameSweep::setStrays(const std::vector<JointTolerance>& of_joint) {
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    engine::SweepStep& step = steps_[i];
+    const Origin& from = origin_[i];
+    step.stray = 0;
+    if (from.joint < 0 || of_joint.empty()) continue;
+    const JointTolerance& tolerance = of_joint[static_cast<std::size_t>(from.joint)];
+    const bool turns = step.kind == engine::StepKind::revolute || step.kind == engine::StepKind::turn;
+    // A planar joint slides by two factors: its length is that of both together, so the first one has it all.
+    step.stray = turns ? tolerance.angle : from.factor == 0 ? tolerance.length : 0;
+  }
+}
+
 void FrameSweep::enterTree(const KinematicTree& tree, const Carrier& world) {
   tree_ = &tree;
   base_ = -1;
@@ -216,6 +229,7 @@ engine::SweepView FrameSweep::view() const {
   view.num_steps = static_cast<std::int32_t>(steps_.size());
   for (const engine::SweepStep& step : steps_) {
     view.local_bounds = view.local_bounds || step.source;
+    view.strays = view.strays || step.stray > 0;
     view.first_order = view.first_order || (step.source && !step.source->derivatives);
   }
   return view;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fcl_artic/kinematic_tree.h"
+#include "fcl_artic/tube.h"
 #include "model/sweep.h"
 #include "motion/body_motion.h"
 
@@ -45,6 +46,10 @@ class FrameSweep {
   /// @param orientation  of a turn: number, among those of the query, of the rotation that it is applied to; -1: none.
   Carrier cross(const Carrier& from, const MotionElement& element, int variable, const engine::BoundedSource* source,
                 bool down, int orientation = -1);
+
+  /// Says how far the tree's joints stray: of each joint an angle (rad) and a length (m).
+  /// @param of_joint  in the tree's order; none: no joint strays.
+  void setStrays(const std::vector<JointTolerance>& of_joint);
 
   /// Adds an error to the motion of the step crossed last: an angle in units of 2^-52 rad, a length in 2^-52 m.
   void allowError(double angle, double length);

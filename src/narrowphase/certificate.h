@@ -7,6 +7,7 @@
 
 #include "convex/piece_kinds.h"
 #include "motion/rigid_lanes.h"
+#include "narrowphase/tube.h"
 #include "numerics/assertion.h"
 
 namespace fcl_artic {
@@ -18,7 +19,10 @@ struct Side {
   RigidLanes m;
   const TreeView* still;
   const TreeView* moving;
-  double margin, pad;
+  double margin, pad;          ///< with what the tube adds in any direction
+  double own_margin;           ///< without
+  const Tube* tube = nullptr;  ///< null: nothing strays
+  const Side* direct;          ///< B seen from A: this one, or the other one of the pair
 };
 
 /// Ends of n.x over the moving piece's core, as Bernstein points of a lower and an upper quadratic; the remainder and
@@ -45,19 +49,46 @@ FCL_ARTIC_INLINE double slackOf(const Side& side, const Piece& still, const Piec
   return side.margin + still.radius + moving.radius + side.m.rem_c + side.m.rem_R * moving.reach + side.pad;
 }
 
+/// Upper bounds of what the tube takes of the gap along n, over the lanes. The side has a tube.
+/// @param n  in the frame of side.still; `length` is at least |n|.
+inline Lanes tubeAlong(const Side& side, const Piece& still, const Piece& moving, const Vec3Lanes& n,
+                       const Lanes& length, unsigned lanes) {
+  const Side& direct = *side.direct;
+  if (&side == &direct) {
+    return tubeAlong(*side.tube, {*side.still, *side.moving, still, moving, side.m}, n, length, true, lanes);
+  }
+  const TubePieces pieces = {*direct.still, *direct.moving, moving, still, direct.m};
+  return tubeAlong(*side.tube, pieces, direct.m.R[0] * n, length, true, lanes);
+}
+/// slackOf() without the tube.
+FCL_ARTIC_INLINE double slackWithoutTube(const Side& side, const Piece& still, const Piece& moving) {
+  return side.own_margin + still.radius + moving.radius + side.m.rem_c + side.m.rem_R * moving.reach + side.pad;
+}
+
+/// Lanes in which a range of the moving core is farther from one of the still core than slackOf(), or than the slack
+/// that the tube leaves along n.
+/// @param n  in the frame of side.still.
+FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& still, const Piece& moving, const Vec3& n,
+                                             const Lanes& least, const Lanes& most, unsigned lanes) {
+  double s_lower, s_upper;
+  coreRange(*side.still, still, n, s_lower, s_upper);
+  const double slack = slackOf(side, still, moving);
+  const unsigned apart = greater(least, Lanes(s_upper + slack)) | greater(Lanes(s_lower - slack), most);
+  if (!side.tube || !(lanes & ~apart)) return apart;
+  const Lanes along = tubeAlong(side, still, moving, spread(n), Lanes(1 + 8 * kUlp), lanes & ~apart) +
+                      Lanes(slackWithoutTube(side, still, moving));
+  return apart | greater(least, Lanes(s_upper) + along) | greater(Lanes(s_lower) - along, most);
+}
+
 /// Lanes, of those that matter, in which n or -n (unit to 1e-15) certainly keeps the pieces more than the margin apart
 /// over the whole interval.
 /// @param n  in the frame of side.still.
 FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& still, const Piece& moving, const Vec3& n,
                                              unsigned lanes) {
-  double s_lower, s_upper;
-  coreRange(*side.still, still, n, s_lower, s_upper);
   Lanes lower[3], upper[3];
   movingRange(side, moving, n, lanes, lower, upper);
-  const double slack = slackOf(side, still, moving);
-  const unsigned above = greater(min(min(lower[0], lower[1]), lower[2]), Lanes(s_upper + slack));
-  const unsigned below = greater(Lanes(s_lower - slack), max(max(upper[0], upper[1]), upper[2]));
-  return above | below;
+  const Lanes least = min(min(lower[0], lower[1]), lower[2]), most = max(max(upper[0], upper[1]), upper[2]);
+  return certainlySeparated(side, still, moving, n, least, most, lanes);
 }
 
 /// The range of n.x over the moving piece's core in each lane, for a direction n that is fixed in the frame of
@@ -79,10 +110,7 @@ FCL_ARTIC_INLINE void sweepRange(const Side& side, const Piece& moving, const Ve
 /// certainlySeparated() along range.n, of the piece whose range it is.
 FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& still, const Piece& moving,
                                              const SweptRange& range) {
-  double s_lower, s_upper;
-  coreRange(*side.still, still, range.n, s_lower, s_upper);
-  const double slack = slackOf(side, still, moving);
-  return range.lanes & (greater(range.least, Lanes(s_upper + slack)) | greater(Lanes(s_lower - slack), range.most));
+  return range.lanes & certainlySeparated(side, still, moving, range.n, range.least, range.most, range.lanes);
 }
 
 /// A part [0, z] of [0, 1] on which the quadratic with Bernstein coefficients G is certainly positive; up to its first
@@ -121,7 +149,11 @@ FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece
   coreRange(*side.still, still, n, s_lower, s_upper);
   Lanes upper[3];
   movingRange(side, moving, n, kAllLanes, G, upper);
-  const Lanes slack(s_upper + slackOf(side, still, moving));
+  Lanes slack(s_upper + slackOf(side, still, moving));
+  if (side.tube) {
+    slack = tubeAlong(side, still, moving, spread(n), Lanes(1 + 8 * kUlp), kAllLanes) +
+            Lanes(s_upper + slackWithoutTube(side, still, moving));
+  }
   for (int k = 0; k < 3; ++k) G[k] = G[k] - slack;
 }
 
@@ -135,7 +167,7 @@ struct TurningDirection {
 /// n_0) / 3, (2 R_1 n_1 + R_2 n_0) / 3, R_2 n_1). The still piece's range is convex in n, so it lies below the line
 /// between its values at both ends. So does |n|, and all that is taken off is multiplied by the larger of both. The
 /// quadratic with the points (g_0, min((3 g_1 - g_0) / 2, (3 g_2 - g_3) / 2), g_3) lies below the cubic: raised to
-/// degree 3 none of its points is higher.
+/// degree 3 none of its points is higher. (The tube's part is convex in n: no direction between has a larger one.)
 /// @param side  B seen from A: the pad is derived for the direct motion (doc/NUMERICS.md, "Pads").
 FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece& moving, const TurningDirection& n,
                                Lanes* G) {
@@ -144,8 +176,14 @@ FCL_ARTIC_INLINE void gapBound(const Side& side, const Piece& still, const Piece
   Lanes s_lower[2], s_upper[2];
   coreRange(*side.still, still, n.begin, s_lower[0], s_upper[0]);
   coreRange(*side.still, still, n.end, s_lower[1], s_upper[1]);
-  const Lanes length =
-      sqrt(max(dot(n.begin, n.begin), dot(n.end, n.end))) * Lanes((1 + 8 * kUlp) * slackOf(side, still, moving));
+  const Lanes longest = sqrt(max(dot(n.begin, n.begin), dot(n.end, n.end)));
+  Lanes length = longest * Lanes((1 + 8 * kUlp) * slackOf(side, still, moving));
+  if (side.tube) {
+    const Lanes unit = longest * Lanes(1 + 8 * kUlp);
+    length = unit * Lanes(slackWithoutTube(side, still, moving)) +
+             max(tubeAlong(side, still, moving, n.begin, unit, kAllLanes),
+                 tubeAlong(side, still, moving, n.end, unit, kAllLanes));
+  }
   for (int k = 0; k < 4; ++k) {
     // Point k of the cubic: (k n_1 X_(k-1) + (3 - k) n_0 X_k) / 3.
     Vec3Lanes u = spread(Vec3(0, 0, 0));

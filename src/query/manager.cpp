@@ -130,6 +130,31 @@ void ArticulatedCollisionManager::resetMargins() {
   impl_->setup.marginsChanged();
 }
 
+void ArticulatedCollisionManager::setJointTolerances(const JointTolerance& all) {
+  impl_->registry.setJointTolerances(all);
+  impl_->setup.tolerancesChanged();
+}
+
+void ArticulatedCollisionManager::setJointTolerance(const std::string& joint, const JointTolerance& tolerance) {
+  impl_->registry.setJointTolerance(joint, tolerance);
+  impl_->setup.tolerancesChanged();
+}
+
+void ArticulatedCollisionManager::setBaseTolerance(const PoseTolerance& tolerance) {
+  impl_->registry.setBaseTolerance(tolerance);
+  impl_->setup.tolerancesChanged();
+}
+
+void ArticulatedCollisionManager::setObjectTolerance(const std::string& name, const PoseTolerance& tolerance) {
+  impl_->registry.setObjectTolerance(name, tolerance);
+  impl_->setup.tolerancesChanged();
+}
+
+void ArticulatedCollisionManager::resetTolerances() {
+  impl_->registry.resetTolerances();
+  impl_->setup.tolerancesChanged();
+}
+
 void ArticulatedCollisionManager::setVisibility(std::shared_ptr<const VisibilityCuller> culler) {
   impl_->stage2 = std::make_unique<Stage2>(culler ? std::move(culler) : std::make_shared<VisibilityCuller>());
 }

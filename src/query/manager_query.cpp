@@ -14,6 +14,7 @@
 #include "query/manager_impl.h"
 #include "query/query_context.h"
 #include "query/report.h"
+#include "query/tube_witness.h"
 #include "visibility/solve.h"
 
 namespace fcl_artic {
@@ -25,6 +26,7 @@ struct TableAdvice {
   const ProvenPairs& proven;
   const engine::Problem& problem;
   const JointMotion& motion;
+  const VariableStrays strays;
   const engine::Margins& margins;
   QueryWorkspace& workspace;
 
@@ -34,7 +36,7 @@ struct TableAdvice {
     if (!tables.empty()) {
       advisor.freePartsOf = [](void* self, std::int32_t link_pair) {
         const auto& of = *static_cast<TableAdvice*>(self);
-        return of.tables.freeParts(of.problem, of.motion, of.margins, link_pair);
+        return of.tables.freeParts(of.problem, of.motion, of.strays, of.margins, link_pair);
       };
     }
     if (!proven.empty()) {
@@ -42,7 +44,7 @@ struct TableAdvice {
         const auto& of = *static_cast<TableAdvice*>(self);
         std::vector<std::uint8_t>& parts = of.workspace.link_free;
         parts.assign(static_cast<std::size_t>(of.problem.num_link_pairs), 0);
-        of.proven.addFreeParts(of.problem, of.motion, of.margins, parts);
+        of.proven.addFreeParts(of.problem, of.motion, of.strays, of.margins, parts);
         return parts.data();
       };
     }
@@ -55,6 +57,16 @@ struct TableAdvice {
     return advisor;
   }
 };
+
+/// @throws std::invalid_argument for what doesn't know tolerances of joints and poses.
+void refuseWithTolerances(const CertifiedRequest& request) {
+  const char* const what = request.method == Method::redon2004 ? "Method::redon2004"
+                           : request.certificate               ? "request.certificate"
+                                                               : nullptr;
+  if (!what) return;
+  throw std::invalid_argument(
+      std::string(what) + " does not know tolerances of joints, base or objects; resetTolerances() takes them away");
+}
 
 /// Gives the query the motion's variables, then those of the moving obstacles.
 /// @param moving  the latter, column k for t^k.
@@ -242,6 +254,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   const KinematicTree& robot = *registry.tree();
   impl_->requireReady();
   motion.requireOf(robot);
+  if (setup.strays()) refuseWithTolerances(request);
   engine::Query query = makeQuery(request);
   query.check_scene = request.check_scene;
 
@@ -257,7 +270,9 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   (context.own_margins ? setup.margins() : setup.marginsOfNeighbours()).putInto(query.margins);
   restrictPairs(request, setup, problem, query.margins);
   if (context.left_out && !context.left_out->empty()) leaveOut(*context.left_out, *workspace, problem);
-  TableAdvice advice{setup.tables(), setup.proven(), problem, motion, query.margins, *workspace};
+  query.strays = context.strays;
+  const VariableStrays variable_strays = setup.variableStrays(query.strays);
+  TableAdvice advice{setup.tables(), setup.proven(), problem, motion, variable_strays, query.margins, *workspace};
   if (request.check_self && request.method == Method::standard) query.ask(advice.advisor());
   if (context.may_ignore) {
     query.may_ignore = context.may_ignore->data();
@@ -273,6 +288,9 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   result.contacts.clear();
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
     result.contacts.push_back(report(registry, motion, context.time, answer.contacts[i]));
+  }
+  if (setup.strays() && query.strays > 0 && !result.isFree()) {
+    findWitnesses({problem, query, motion, context.time}, registry, variable_strays, answer, *workspace, result);
   }
   keepFirstOfEachPair(result.certain, result.contacts);
   result.M_0_at_lower.clear();

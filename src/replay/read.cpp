@@ -93,6 +93,7 @@ class Builder {
       own.of.size() == 1 ? manager.setMargin(own.of[0], own.margin)
                          : manager.setMargin(own.of[0], own.of[1], own.margin);
     }
+    for (const ToleranceRecord& own : record_.tolerances) setTolerance(own, manager);
     manager.setLinkPairProofs(prove(manager));
     manager.setup();
     return manager;
@@ -102,6 +103,21 @@ class Builder {
   std::shared_ptr<fcl::CollisionGeometryd> geometry(std::size_t number, const std::string& at) const {
     if (number < geometries_.size()) return geometries_[number];
     refuse(at + ".geometry", "is " + std::to_string(number) + ", and there are " + std::to_string(geometries_.size()));
+  }
+
+  static void setTolerance(const ToleranceRecord& own, ArticulatedCollisionManager& manager) {
+    const JointTolerance of_joint = {own.angle, own.length};
+    const PoseTolerance of_pose = {own.length, own.angle, own.pivot};
+    switch (own.of) {
+      case ToleranceRecord::Of::joints:
+        return manager.setJointTolerances(of_joint);
+      case ToleranceRecord::Of::joint:
+        return manager.setJointTolerance(own.name, of_joint);
+      case ToleranceRecord::Of::base:
+        return manager.setBaseTolerance(of_pose);
+      case ToleranceRecord::Of::object:
+        return manager.setObjectTolerance(own.name, of_pose);
+    }
   }
 
   void addCarried(ArticulatedCollisionManager& manager) {

@@ -226,6 +226,35 @@ void fields(A& a, MarginRecord& m) {
   a("of", m.of);
   a("margin", m.margin);
 }
+/// A tolerance that is not 0, or a joint's own.
+struct ToleranceRecord {
+  enum class Of { joints, joint, base, object };
+  Of of = Of::joints;
+  std::string name;  ///< of a joint or an object
+  double angle = 0, length = 0;
+  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();  ///< of a base or an object
+
+  bool operator==(const ToleranceRecord& other) const {
+    return of == other.of && name == other.name && angle == other.angle && length == other.length &&
+           pivot == other.pivot;
+  }
+};
+inline constexpr NamedValue<ToleranceRecord::Of> kToleranceKinds[] = {{ToleranceRecord::Of::joints, "joints"},
+                                                                      {ToleranceRecord::Of::joint, "joint"},
+                                                                      {ToleranceRecord::Of::base, "base"},
+                                                                      {ToleranceRecord::Of::object, "object"}};
+constexpr const auto& namesOf(ToleranceRecord::Of) {
+  return kToleranceKinds;
+}
+template <class A>
+void fields(A& a, ToleranceRecord& t) {
+  a("of", t.of);
+  const bool named = t.of == ToleranceRecord::Of::joint || t.of == ToleranceRecord::Of::object;
+  if (named) a("name", t.name);
+  a("angle", t.angle);
+  a("length", t.length);
+  if (t.of == ToleranceRecord::Of::base || t.of == ToleranceRecord::Of::object) a("pivot", t.pivot);
+}
 /// Two links whose own geometries are proven apart for all values within the joints' limits.
 struct ProofRecord {
   Names of;
@@ -284,6 +313,7 @@ struct QueryRecord {
   std::vector<ObstacleRecord> obstacles;
   AllowedRecord pairs;
   std::vector<MarginRecord> margins;
+  std::vector<ToleranceRecord> tolerances;
   std::vector<ProofRecord> proofs;
   QuestionRecord motion;
   CertifiedRequest request;
@@ -300,6 +330,7 @@ void fields(A& a, QueryRecord& q) {
   a("obstacles", q.obstacles);
   a("pairs", q.pairs);
   a("margins", q.margins);
+  a.unless(std::vector<ToleranceRecord>(), "tolerances", q.tolerances);
   a("proofs", q.proofs);
   a("motion", q.motion);
   a("request", q.request);

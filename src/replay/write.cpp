@@ -48,6 +48,7 @@ class Recorder {
     for (const auto& [a, b] : registry_.allowed().disallowedPairs()) record_.pairs.disallowed.push_back({a, b});
     record_.pairs.complete = registry_.allowed().complete();
     addMargins();
+    addTolerances();
     addProofs();
     return std::move(record_);
   }
@@ -132,6 +133,20 @@ class Recorder {
       if (same != found.ofPairs().end() && same->second == margin) continue;
       record_.margins.push_back({{pair.first, pair.second}, margin});
     }
+  }
+
+  void addTolerances() {
+    using Of = ToleranceRecord::Of;
+    const NamedTolerances& tolerances = registry_.tolerances();
+    const JointTolerance& all = tolerances.ofAllJoints();
+    const PoseTolerance& base = tolerances.base();
+    const auto add = [&](Of of, const std::string& name, const auto& tolerance, const Eigen::Vector3d& pivot) {
+      record_.tolerances.push_back({of, name, tolerance.angle, tolerance.length, pivot});
+    };
+    if (all.angle > 0 || all.length > 0) add(Of::joints, {}, all, Eigen::Vector3d::Zero());
+    for (const auto& [name, own] : tolerances.ofJoints()) add(Of::joint, name, own, Eigen::Vector3d::Zero());
+    if (base.angle > 0 || base.length > 0) add(Of::base, {}, base, base.pivot);
+    for (const auto& [name, own] : tolerances.ofObjects()) add(Of::object, name, own, own.pivot);
   }
 
   /// Proofs of two links hold for all of their geometries, which a reader proves again.

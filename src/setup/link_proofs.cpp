@@ -13,9 +13,9 @@
 namespace fcl_artic {
 namespace {
 
-/// Whether a variable keeps within a range over a whole motion. (Each power of t is within [0, 1]; 64 ulp of the
-/// coefficients' sizes are more than the rounding of their sums.)
-bool keepsWithin(const JointMotion& motion, int v, const ValueRange& range) {
+/// Whether a variable keeps within a range over a whole motion, wherever it strays. (Each power of t is within [0, 1];
+/// 64 ulp of the coefficients' sizes are more than the rounding of their sums.)
+bool keepsWithin(const JointMotion& motion, int v, double stray, const ValueRange& range) {
   const Eigen::MatrixXd& variables = motion.variables();
   double least = variables(v, 0), most = least, size = std::abs(least);
   for (Eigen::Index k = 1; k < variables.cols(); ++k) {
@@ -29,6 +29,11 @@ bool keepsWithin(const JointMotion& motion, int v, const ValueRange& range) {
   most += slack;
   const engine::HalfAngles half_angles = halfAnglesOf(motion);
   if (half_angles.has(v)) turnIntoAngles(half_angles.reference[v], least, most);
+  if (stray > 0) {
+    stray += 4 * 0x1p-52 * (stray + std::max(std::abs(least), std::abs(most)));  // rounding of the sums
+    least -= stray;
+    most += stray;
+  }
   return least >= range.lower && most <= range.upper;
 }
 
@@ -145,29 +150,31 @@ void ProvenPairs::buildScene(const Registry& registry) {
   }));
 }
 
-bool ProvenPairs::within(const std::vector<int>& variables, const JointMotion& motion) const {
+bool ProvenPairs::within(const std::vector<int>& variables, const JointMotion& motion,
+                         const VariableStrays& strays) const {
   return std::all_of(variables.begin(), variables.end(),
-                     [&](int v) { return keepsWithin(motion, v, ranges_[static_cast<std::size_t>(v)]); });
+                     [&](int v) { return keepsWithin(motion, v, strays.of(v), ranges_[static_cast<std::size_t>(v)]); });
 }
 
-void ProvenPairs::addFreeParts(const engine::Problem& problem, const JointMotion& motion,
+void ProvenPairs::addFreeParts(const engine::Problem& problem, const JointMotion& motion, const VariableStrays& strays,
                                const engine::Margins& margins, std::vector<std::uint8_t>& parts) const {
   constexpr std::uint8_t kAll = 0xff;
-  const bool all_within = within(used_, motion);  // so it mostly is, and no pair has to be looked at by itself
+  const bool all_within = within(used_, motion, strays);  // so it mostly is, and no pair has to be looked at by itself
   for (const Pair& pair : checked_) {
     if (margins.of(problem.linkPair(static_cast<std::int32_t>(pair.number))) > pair.margin) continue;
-    if (all_within || within(pair.variables, motion)) parts[pair.number] = kAll;
+    if (all_within || within(pair.variables, motion, strays)) parts[pair.number] = kAll;
   }
 }
 
 std::size_t ProvenPairs::unprovenAllowed(const JointMotion* const* motions, std::size_t num_motions,
-                                         const engine::Margins& margins, bool self, bool scene) const {
+                                         const VariableStrays& strays, const engine::Margins& margins, bool self,
+                                         bool scene) const {
   std::size_t unproven = scene ? allowed_scene_ : 0;
   if (!self) return unproven;
   unproven += allowed_self_ + (undecided_ ? undecided_->size() : 0);
   const auto allWithin = [&](const std::vector<int>& variables) {
     return std::all_of(motions, motions + num_motions,
-                       [&](const JointMotion* motion) { return within(variables, *motion); });
+                       [&](const JointMotion* motion) { return within(variables, *motion, strays); });
   };
   if (allowed_.empty()) return unproven;
   const bool all_within = allWithin(used_);  // so it mostly is, and no pair has to be looked at by itself

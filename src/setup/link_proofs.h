@@ -14,6 +14,7 @@
 #include "fcl_artic/joint_motion.h"
 #include "fcl_artic/link_pairs.h"
 #include "model/margins.h"
+#include "model/variable_strays.h"
 #include "setup/pair_making.h"
 #include "setup/registry.h"
 #include "tables/range_proof.h"
@@ -53,13 +54,14 @@ class ProvenPairs {
   bool proven(std::size_t link_pair) const { return link_pair < is_proven_.size() && is_proven_[link_pair]; }
 
   /// Marks the pairs that are proven apart for a whole motion.
+  /// @param strays  of the motion's variables.
   /// @param[in,out] parts  of each link pair, as engine::Advisor::freeParts.
-  void addFreeParts(const engine::Problem& problem, const JointMotion& motion, const engine::Margins& margins,
-                    std::vector<std::uint8_t>& parts) const;
+  void addFreeParts(const engine::Problem& problem, const JointMotion& motion, const VariableStrays& strays,
+                    const engine::Margins& margins, std::vector<std::uint8_t>& parts) const;
 
   /// Number of allowed pairs of names, of two links or of link and obstacle, which nothing proves apart for all of
   /// these motions; undecidedNeighbours() included.
-  std::size_t unprovenAllowed(const JointMotion* const* motions, std::size_t num_motions,
+  std::size_t unprovenAllowed(const JointMotion* const* motions, std::size_t num_motions, const VariableStrays& strays,
                               const engine::Margins& margins, bool self, bool scene) const;
 
   /// Neighbours that the rule leaves out as it can't be decided whether they touch; null: none.
@@ -75,7 +77,7 @@ class ProvenPairs {
   };
   /// Fills in what follows from the lists of pairs.
   void summarize();
-  bool within(const std::vector<int>& variables, const JointMotion& motion) const;
+  bool within(const std::vector<int>& variables, const JointMotion& motion, const VariableStrays& strays) const;
 
   std::vector<Pair> checked_, allowed_;
   std::shared_ptr<const Names> undecided_;

@@ -77,13 +77,13 @@ void LinkTables::addGrid(const KinematicTree& tree, std::int32_t link_pair, cons
   }
 }
 
-unsigned LinkTables::freeParts(const engine::Problem& problem, const JointMotion& motion,
+unsigned LinkTables::freeParts(const engine::Problem& problem, const JointMotion& motion, const VariableStrays& strays,
                                const engine::Margins& margins, std::int32_t link_pair) const {
   const auto pair = static_cast<std::size_t>(link_pair);
   if (pair >= tables_.size() || !tables_[pair]) return 0;
   const PairTable& table = *tables_[pair];
   if (margins.of(problem.linkPair(link_pair)) > table.margin()) return 0;
-  return table.freeParts(motion.variables(), halfAnglesOf(motion));
+  return table.freeParts(motion.variables(), halfAnglesOf(motion), strays);
 }
 
 void LinkTables::likelyContacts(const JointMotion& motion, std::vector<engine::LikelyContact>& found) const {

@@ -33,8 +33,9 @@ class LinkTables {
 
   /// The parts of a motion that the pair's table proves apart, if it was built for at least the margin that the pair
   /// has here: bit k for the part [k/8, (k+1)/8].
-  unsigned freeParts(const engine::Problem& problem, const JointMotion& motion, const engine::Margins& margins,
-                     std::int32_t link_pair) const;
+  /// @param strays  of the motion's variables.
+  unsigned freeParts(const engine::Problem& problem, const JointMotion& motion, const VariableStrays& strays,
+                     const engine::Margins& margins, std::int32_t link_pair) const;
 
   /// Where links are likely to touch, the motion's end first: a guess, as engine::Advisor::suggest. (None for robots of
   /// more than 64 variables.)

@@ -145,6 +145,7 @@ void Registry::forget(Bodies& bodies, Bodies::iterator body) {
 
 void Registry::keepNames(const std::function<bool(const std::string& body)>& isKept) {
   margins_.keep(isKept);
+  tolerances_.keep(isKept);
   const auto isGone = [&](const auto& pair) { return !isKept(pair.first) || !isKept(pair.second); };
   const auto haveGone = [&](const AllowedCollisionMatrix::Pairs& pairs) {
     return std::any_of(pairs.begin(), pairs.end(), isGone);
@@ -462,6 +463,18 @@ void Registry::setMargin(const std::string& a, const std::string& b, double marg
   requireBody(a, "setMargin");
   requireBody(b, "setMargin");
   margins_.set(a, b, margin);
+}
+
+void Registry::setJointTolerance(const std::string& joint, const JointTolerance& tolerance) {
+  tolerances_.setJoint(*tree_, joint, tolerance, "setJointTolerance");
+}
+
+void Registry::setObjectTolerance(const std::string& name, const PoseTolerance& tolerance) {
+  requireBody(name, "setObjectTolerance");
+  if (tree_->hasLink(name)) {
+    throw std::invalid_argument("setObjectTolerance: '" + name + "' is a link: set its joints' tolerances");
+  }
+  tolerances_.setObject(name, tolerance);
 }
 
 }  // namespace fcl_artic

@@ -15,6 +15,7 @@
 #include "fcl_artic/manager.h"
 #include "setup/managed_body.h"
 #include "setup/margins.h"
+#include "setup/tube.h"
 
 namespace fcl_artic {
 
@@ -113,6 +114,14 @@ class Registry {
   /// The latter alone.
   NamedMargins marginsOfNeighbours() const;
 
+  // The public manager's functions of the same names say what they throw.
+  void setJointTolerances(const JointTolerance& all) { tolerances_.setAllJoints(all); }
+  void setJointTolerance(const std::string& joint, const JointTolerance& tolerance);
+  void setBaseTolerance(const PoseTolerance& tolerance) { tolerances_.setBase(tolerance); }
+  void setObjectTolerance(const std::string& name, const PoseTolerance& tolerance);
+  void resetTolerances() { tolerances_.clear(); }
+  const NamedTolerances& tolerances() const { return tolerances_; }
+
   /// @throws std::invalid_argument beginning with `what` where the robot has no such link.
   LinkId requireLink(const LinkRef& link, const std::string& what) const;
 
@@ -150,6 +159,7 @@ class Registry {
   std::unordered_set<std::string> obstacle_names_;
   std::size_t named_ = 0;  ///< obstacles that were given a name so far
   NamedMargins margins_;
+  NamedTolerances tolerances_;
 };
 
 }  // namespace fcl_artic

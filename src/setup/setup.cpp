@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "setup/setup.h"
 
+#include <algorithm>
+
 #include "geometry/solid_space.h"
 #include "threads/parallel.h"
 
@@ -12,6 +14,7 @@ void Setup::build(const Registry& registry) {
   ready_ = false;
   buildScene(registry);
   listMovers();
+  setStrays(registry);
   const auto nameOf = [&](std::int32_t body) -> const std::string& { return registry.body(body).name; };
   margins_ = PairMargins::of(registry.margins(), problem(), nameOf);
   margins_of_neighbours_ = PairMargins::of(registry.marginsOfNeighbours(), problem(), nameOf);
@@ -39,6 +42,21 @@ void Setup::listMovers() {
   addMoverRows(link_movers_.pairs, 0, num_self_pairs_, link_movers_.rows);
   link_movers_.num_self_rows = link_movers_.rows.size();
   addMoverRows(link_movers_.pairs, num_self_pairs_, link_pairs_.size(), link_movers_.rows);
+}
+
+void Setup::setStrays(const Registry& registry) {
+  const NamedTolerances& tolerances = registry.tolerances();
+  strays_ = tolerances.straysOf(*registry.tree());
+  for (FrameSweep& sweep : sweeps_) sweep.setStrays(strays_.of_joint);
+  const PoseTolerance& base = tolerances.base();
+  base_stray_ = {base.length, base.angle, {base.pivot[0], base.pivot[1], base.pivot[2]}};
+  largest_stray_ = 0;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const ManagedBody& body = registry.body(static_cast<std::int32_t>(i));
+    bodies_[i].stray = body.empty() ? 0 : tolerances.strayOf(body.name, *body.shape);
+    largest_stray_ = std::max(largest_stray_, bodies_[i].stray);
+  }
+  any_stray_ = tolerances.any();
 }
 
 void Setup::readSolids(const Registry& registry) {
@@ -74,6 +92,9 @@ engine::Problem Setup::problem() const {
   p.num_obstacles = static_cast<std::int32_t>(still_.bodies.size());
   p.obstacle_tree = still_.tree.empty() ? nullptr : still_.tree.data();
   p.still_bounds = still_.bounds.data();
+  p.strays = any_stray_;
+  p.base = base_stray_;
+  p.largest_stray = largest_stray_;
   p.contained = solids_ ? &findContained : nullptr;
   return p;
 }

@@ -18,6 +18,7 @@
 #include "setup/margins.h"
 #include "setup/mover_rows.h"
 #include "setup/registry.h"
+#include "setup/tube.h"
 
 namespace fcl_artic {
 
@@ -25,6 +26,7 @@ class Setup {
  public:
   void robotChanged() { robot_ready_ = ready_ = false; }  ///< links, or what is allowed
   void obstaclesChanged() { ready_ = false; }
+  void tolerancesChanged() { ready_ = false; }
   void marginsChanged() { tables_ready_ = ready_ = false; }
   /// From now on build() makes trees of oriented boxes, which else come when they are first asked for.
   void prepareObbTrees() {
@@ -56,6 +58,13 @@ class Setup {
   std::int32_t numSelfPairs() const { return static_cast<std::int32_t>(num_self_pairs_); }
   /// The same of its rows of movers.
   std::int32_t numSelfRows() const { return static_cast<std::int32_t>(link_movers_.num_self_rows); }
+  /// How far variables stray, for those who look at ranges of them.
+  /// @param times  engine::Query::strays
+  VariableStrays variableStrays(double times) const {
+    return {strays_.of_variable.empty() ? nullptr : strays_.of_variable.data(), times};
+  }
+  /// Whether the robot or an obstacle strays.
+  bool strays() const { return any_stray_; }
   const LinkTables& tables() const { return *tables_; }
   const ProvenPairs& proven() const { return proven_; }
   /// Variables of the moving obstacles' motions, column k for t^k. A query's own come before them.
@@ -67,6 +76,7 @@ class Setup {
   std::vector<Carrier> buildLinks(const Registry& registry);
   void buildSelfPairs(const Registry& registry, const std::vector<Carrier>& carriers, const IsChecked& checked);
   void listMovers();
+  void setStrays(const Registry& registry);
   void readSolids(const Registry& registry);
   // setup_scene.cpp: what depends on the obstacles.
   void buildScene(const Registry& registry);
@@ -94,6 +104,10 @@ class Setup {
   StillObstacles still_;
   std::vector<engine::BoundedSource> sources_;  ///< of moving obstacles' bounded motions
   Eigen::MatrixXd moving_coefficients_;
+  TreeStrays strays_;
+  engine::BaseStray base_stray_;
+  double largest_stray_ = 0;  ///< of a body
+  bool any_stray_ = false;
   PairMargins margins_, margins_of_neighbours_;
   ProvenPairs proven_;
   std::shared_ptr<const LinkTables> tables_ =

@@ -374,7 +374,8 @@ bool PairTable::free(const double* lower, const double* upper) const {
   return true;
 }
 
-unsigned PairTable::freeParts(const Eigen::MatrixXd& variables, const engine::HalfAngles& half_angles) const {
+unsigned PairTable::freeParts(const Eigen::MatrixXd& variables, const engine::HalfAngles& half_angles,
+                              const VariableStrays& strays) const {
   constexpr int kParts = 8;
   const Eigen::Index degree = variables.cols() - 1;
   // Taylor's polynomial about the middle; its coefficients' terms, and with them all rounding, are within a few dozen
@@ -393,6 +394,10 @@ unsigned PairTable::freeParts(const Eigen::MatrixXd& variables, const engine::Ha
       upper[a] = c[0] + way;
       const int v = cells_.axes[a].variable;
       if (half_angles.has(v)) turnIntoAngles(half_angles.reference[v], lower[a], upper[a]);
+      const double stray = strays.of(v);
+      if (!std::isfinite(stray)) return false;
+      lower[a] -= stray;
+      upper[a] += stray;
     }
     return free(lower, upper);
   };

@@ -19,6 +19,7 @@
 #include "fcl_artic/kinematic_tree.h"
 #include "model/problem.h"
 #include "model/query.h"
+#include "model/variable_strays.h"
 
 namespace fcl_artic {
 
@@ -55,7 +56,9 @@ class PairTable {
   /// Parts [k/8, (k+1)/8] of a motion, bit k each, over all of which the links are proven more than margin() apart.
   /// @param variables  of the motion: a row each, column k for t^k.
   /// @param half_angles  which of them are tangents of half an angle.
-  unsigned freeParts(const Eigen::MatrixXd& variables, const engine::HalfAngles& half_angles = {}) const;
+  /// @param strays  values that the variables may have instead: all of them are looked at.
+  unsigned freeParts(const Eigen::MatrixXd& variables, const engine::HalfAngles& half_angles = {},
+                     const VariableStrays& strays = {}) const;
 
   /// Whether the links are proven more than margin() apart for all values in a box: `lower[i]` to `upper[i]` of
   /// the variable of cells().axes[i].

@@ -166,8 +166,9 @@ inline bool Follower::findGap(Candidate& f, Seen seen, int lane, double tau, dou
   }
   f.normal = g.n;
   seen->setWitness(g.n);
-  f.gap_lower = g.lower - radii;
-  f.gap_upper = g.distance - radii;
+  const double reached = pieces.a.radius + pieces.b.radius + seen->touchMargin(pieces.a, pieces.b, g.n, lane);
+  f.gap_lower = g.lower - reached;
+  f.gap_upper = g.distance - reached;
   return f.have_normal = true;
 }
 
@@ -267,7 +268,8 @@ inline bool Follower::proveAhead(Candidate& f, Seen seen, int lane) {
   if (piece_a < 0 || piece_b < 0) return false;
   ++statistics().contact_proofs;
   const DifferenceBody body = seen->differenceAt(A.pieces[piece_a], B.pieces[piece_b], lane);
-  if (!certainlyTouching(body, seen->margin(), seen->poseError(), f.normal, f.point)) return false;
+  const double within = seen->touchMargin(*body.a, *body.b, f.normal, lane);
+  if (!certainlyTouching(body, within, seen->poseError(), f.normal, f.point)) return false;
   const double t = seen->batch().at[lane];
   if (!contacts_.takeProof(f.entry.pair, t)) return false;
   f.target = Candidate::Target::leafPair;
@@ -305,7 +307,8 @@ inline bool Follower::prove(Candidate& f) {
     const int k = (head + i) % kLanes;
     const DifferenceBody body = seen->differenceAt(a, b, k);
     ++statistics().contact_proofs;
-    if (certainlyTouching(body, seen->margin(), seen->poseError(), f.have_normal ? f.normal : body.pose.c, f.point,
+    const double within = f.have_normal ? seen->touchMargin(a, b, f.normal, k) : seen->margin();
+    if (certainlyTouching(body, within, seen->poseError(), f.have_normal ? f.normal : body.pose.c, f.point,
                           &f.simplex) &&
         contacts_.takeProof(f.entry.pair, poses.at[k])) {
       f.certain = true;

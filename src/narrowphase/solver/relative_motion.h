@@ -6,8 +6,8 @@
 
 #include "convex/contact_proof.h"
 #include "narrowphase/certificate.h"
+#include "narrowphase/solver/strays.h"
 #include "narrowphase/solver/swept_box.h"
-#include "narrowphase/solver/swept_frames.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
@@ -21,7 +21,7 @@ struct PiecePair {
 
 class RelativeMotion : PartOfSolver {
  public:
-  RelativeMotion(Task& task, SweptFrames& frames) : PartOfSolver(task), frames_(frames) {}
+  RelativeMotion(Task& task, SweptFrames& frames) : PartOfSolver(task), frames_(frames), strays_(task, frames) {}
 
   PairId pair() const { return pair_; }
   const TimeBatch& batch() const {
@@ -60,7 +60,19 @@ class RelativeMotion : PartOfSolver {
   const TreeView& still(int s) const { return *side_[s].still; }
   const TreeView& moving(int s) const { return *side_[s].moving; }
 
-  double margin() const { return side_[0].margin; }
+  /// Farther apart than this, the bodies are certainly more than their margin apart in all of the tube, over the batch.
+  double apartMargin() const { return side_[0].margin; }
+  /// The pair's margin, without the tube.
+  double margin() const { return side_[0].own_margin; }
+  /// In the middle of a lane: nearer than this along n, two pieces may be in contact in the tube.
+  /// @param n  unit, in A's tree frame.
+  double touchMargin(const Piece& a, const Piece& b, const Vec3& n, int lane) const {
+    if (!side_[0].tube) return margin();
+    const TubePieces pieces = {this->a(), this->b(), a, b, side_[0].m};
+    return margin() + tubeAlong(tube_, pieces, spread(n), Lanes(1.0), false, 1u << lane)[lane];
+  }
+  /// Upper bound of the tube's part, over the batch.
+  double stray() const { return tube_.over; }
   double pad() const { return side_[0].pad; }
   /// Bound on the error of a pose, for proofs of contact.
   double poseError() const { return pose_error_; }
@@ -95,7 +107,7 @@ class RelativeMotion : PartOfSolver {
     Cached& cached = cached_[s][node & (kCached - 1)];
     if (!isSwept(s, node)) {
       cached = {node, epoch_, pool_.size()};
-      sweepNode(side(s).m, side_[s].moving->nodes[node], pad() + margin(), pool_.grow());
+      sweepNode(side(s).m, side_[s].moving->nodes[node], pad() + apartMargin(), pool_.grow());
     }
     return pool_[cached.slot];
   }
@@ -115,10 +127,12 @@ class RelativeMotion : PartOfSolver {
   void relate();
 
   SweptFrames& frames_;
+  Strays strays_;
   PairId pair_ = engine::kNoPair;
   std::int32_t of_batch_ = -1;
   Side side_[2];
   bool side_ready_[2] = {false, false};
+  Tube tube_;
   double pose_error_ = 0, amplitude_ = 0;
   Vec3 witness_;
   bool have_witness_ = false;
@@ -174,10 +188,14 @@ inline void RelativeMotion::relate() {
                    {*parts.inverse_a, *parts.placement_b, A.tree->extent + B.tree->extent}, margin, m, side_[1].m);
   side_ready_[0] = side_ready_[1] = false;
   pose_error_ = pads.pose;
+  strays_.between(pair_, pose_error_, tube_);
   side_[0].still = side_[1].moving = A.tree;
   side_[0].moving = side_[1].still = B.tree;
   for (Side& side : side_) {
-    side.margin = margin;
+    side.margin = margin + tube_.over;
+    side.own_margin = margin;
+    side.tube = tube_.over > 0 ? &tube_ : nullptr;
+    side.direct = &side_[0];
     side.pad = pads.pad;
   }
 

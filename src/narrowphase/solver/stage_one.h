@@ -43,6 +43,7 @@ class StageOne : PartOfSolver {
   StageOne(SearchState& state, AnyContact& any)
       : PartOfSolver(state.task),
         frames_(state.frames),
+        strays_(state.task, state.frames),
         motions_(state.motions),
         horizon_(state.horizon),
         contacts_(state.contacts),
@@ -65,9 +66,13 @@ class StageOne : PartOfSolver {
   SweptBox wholeBox(int mover) const;
   void meetLinks();
   void cullObstacles(int mover, Buffer<Entry>& open);
-  void cullPatches(PairId pair, const TreeView& tree, const SweptLss& lss, unsigned mask, Buffer<Entry>& open);
+  void cullPatches(const Entry& large, double margin, const TreeView& tree, const SweptLss& lss, Buffer<Entry>& open);
   void openPatch(const Entry& patch, double radius, const NearestToBox& nearest, Buffer<Entry>& open);
   void cullLinks(Buffer<Entry>& open);
+  /// A pair's margin, and how far the obstacle strays. (The link's line swept sphere has the link's own strays.)
+  double marginToObstacle(PairId pair, int obstacle) const {
+    return query().margins.of(pair) + strays_.ofObstacle(problem().obstacles[obstacle]);
+  }
   unsigned lssMayTouch(int mover, int obstacle_number, unsigned mask, Vec3Lanes& direction);
   void expectContact(PairId pair, int mover, const engine::StillBounds& obstacle, unsigned mask,
                      const NearestToBox& nearest);
@@ -78,6 +83,7 @@ class StageOne : PartOfSolver {
   bool looksForAny() const { return query().any && !query().every_pair && contacts_.watching(); }
 
   SweptFrames& frames_;
+  Strays strays_;
   RelativeMotions& motions_;
   Horizon& horizon_;
   const ContactList& contacts_;
@@ -99,21 +105,25 @@ class StageOne : PartOfSolver {
 /// only the box of its whole path is known.
 inline void StageOne::sweepMover(int mover) {
   const Body& carried = body(problem().movers[mover]);
-  const double margin = query().margins.largest();  // whatever the partner
+  const double margin = query().margins.largest() + strays_.largest();  // whatever the partner
   SweptBox& box = mover_box_[mover];
   if (task_.isLink(mover)) {
     const FrameLanes* frame = carried.step < 0 ? nullptr : &frames_.of(0, carried.step);
     sweepLss({frame, frames_.bounds(0, carried.step), problem().sweeps[0].first_order, whole().d}, carried,
              mover_lss_[mover]);
+    // It holds the link in all of the tube.
+    const double stray = strays_.inWorld(carried);
+    mover_lss_[mover].radius += stray;
     if (frame) {
       boundLss(mover_lss_[mover], margin, box);
       setWholeBox(mover);
       return;
     }
   }
+  const double around = margin + (task_.isLink(mover) ? strays_.inWorld(carried) : 0);  // of obstacles: the largest
   for (int k = 0; k < 3; ++k) {
-    box.lo[k] = narrowDown(Lanes(carried.lo[k] - margin));
-    box.hi[k] = narrowUp(Lanes(carried.hi[k] + margin));
+    box.lo[k] = narrowDown(Lanes(carried.lo[k] - around));
+    box.hi[k] = narrowUp(Lanes(carried.hi[k] + around));
   }
   setWholeBox(mover);
 }
@@ -183,7 +193,7 @@ inline unsigned StageOne::lssMayTouch(int mover, int obstacle_number, unsigned m
   const engine::StillBounds& obstacle = problem().still_bounds[obstacle_number];
   NearestToBox nearest;
   const WorldSeen world = {obstacle.inverse};
-  mask &= ~certainlyApart(mover_lss_[mover], obstacle.box, world, query().margins.of(pair), nearest);
+  mask &= ~certainlyApart(mover_lss_[mover], obstacle.box, world, marginToObstacle(pair, obstacle_number), nearest);
   direction = nearest.direction;
   if (mask && obstacle.solid) expectContact(pair, mover, obstacle, mask, nearest);
   return mask;
@@ -215,10 +225,11 @@ inline void StageOne::expectContact(PairId pair, int mover, const engine::StillB
 /// Goes from the upper levels of a large body's tree down to *patches*: nodes no larger than the link, or without upper
 /// nodes. The boxes of eight children are compared at once with that of the line swept sphere over [0, 1], then with
 /// those of its parts, in the body's tree frame. All that is left out is proven apart: so is all that is below it.
+/// @param large  the pair and the lanes that are left of it.
 /// @param lss  the link's, as seen from the tree's frame.
-inline void StageOne::cullPatches(PairId pair, const TreeView& tree, const SweptLss& lss, unsigned mask,
+inline void StageOne::cullPatches(const Entry& large, double margin, const TreeView& tree, const SweptLss& lss,
                                   Buffer<Entry>& all_open) {
-  const double margin = query().margins.of(pair);
+  const PairId pair = large.pair;
   SweptBox parts;
   boundLss(lss, margin, parts);
   float ends[6];
@@ -232,7 +243,7 @@ inline void StageOne::cullPatches(PairId pair, const TreeView& tree, const Swept
     if (lanes) openPatch({pair, node, 0, lanes}, lss.radius, nearest, all_open);
   };
   open_upper_.clear();
-  open_upper_.push({0, 0, mask});
+  open_upper_.push({0, 0, large.mask});
   for (int i = 0; i < open_upper_.size() && !horizon_.mustEnd(); ++i) {
     const OpenUpper at = open_upper_[i];
     ++statistics().node_tests;
@@ -280,7 +291,7 @@ inline void StageOne::openPatch(const Entry& patch, double radius, const Nearest
 }
 
 /// The line swept sphere of the link B of a pair of two bodies that move, seen from A's tree frame, where A stands
-/// still. All that the motion leaves out or rounds is in the radius.
+/// still. All that the motion leaves out or rounds is in the radius, and so is all by which both stray.
 /// @param lss  in B's tree frame.
 inline void StageOne::sweepInPartner(PairId pair, const double* lss, SweptLss& s) {
   const Seen seen = motions_.of(pair, whole());
@@ -288,7 +299,7 @@ inline void StageOne::sweepInPartner(PairId pair, const double* lss, SweptLss& s
   Lanes sizes(0.0);
   for (int end = 0; end < 2; ++end) {
     const Vec3 p(lss + 3 * end);
-    s.radius = max(s.radius, lss[6] + seen->seePoint(p, s.end[end]));
+    s.radius = max(s.radius, lss[6] + seen->stray() + seen->seePoint(p, s.end[end]));
     for (const Vec3Lanes& c : s.end[end].c) sizes = sizes + abs(c[0]) + abs(c[1]) + abs(c[2]);
   }
   s.measureSegment();
@@ -304,7 +315,7 @@ inline void StageOne::cullObstacles(int mover, Buffer<Entry>& open) {
     if (obstacle.entered) {
       SweptLss seen;
       seeFrom(obstacle.inverse, mover_lss_[mover], seen);
-      cullPatches(pair, *obstacle.tree, seen, met[i].mask, open);
+      cullPatches({pair, 0, 0, met[i].mask}, marginToObstacle(pair, met[i].obstacle), *obstacle.tree, seen, open);
       continue;
     }
     Vec3Lanes direction;
@@ -371,7 +382,7 @@ inline void StageOne::cullLinks(Buffer<Entry>& open) {
     if (tree.upper && body(bodies.b).tree_lss) {
       SweptLss seen;
       sweepInPartner(pair, body(bodies.b).tree_lss, seen);
-      return cullPatches(pair, tree, seen, mask, open);
+      return cullPatches({pair, 0, 0, mask}, query().margins.of(pair), tree, seen, open);
     }
     open.push({pair, 0, 0, mask});
   };
@@ -461,7 +472,8 @@ inline void StageOne::takeAdvice(const engine::Advisor& advisor, Traversal& trav
     if (problem().isScenePair(e.pair)) {
       const int mover = problem().moverOf(e.pair), obstacle = problem().obstacles[problem().obstacleOf(e.pair)];
       if (mover != previous) sweptInWorld(previous = mover, swept_links_.data() + kLanes * mover);
-      candidates_.push({e.pair, mover, obstacle, &body(obstacle).placement, lanes, margin});
+      const double apart = margin + strays_.ofObstacle(obstacle);
+      candidates_.push({e.pair, mover, obstacle, &body(obstacle).placement, lanes, apart});
       continue;
     }
     const PairParts parts = problem().parts(e.pair);

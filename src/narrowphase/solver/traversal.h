@@ -198,6 +198,12 @@ inline unsigned Traversal::apartFromUnbounded(Seen seen, int a, int b) {
   return apart;
 }
 
+/// Two pieces that GJK has found apart in the middle of a lane are nearer there than the tube lets them be.
+inline bool meetsInTube(Seen seen, const PiecePair& pieces, const GjkResult& g, int lane) {
+  const double reached = pieces.a.radius + pieces.b.radius + seen->touchMargin(pieces.a, pieces.b, g.n, lane);
+  return g.distance <= reached;
+}
+
 /// Lanes of `mask` in which no direction tried keeps the pieces apart. Directions are GJK's witnesses at the middles of
 /// lanes and, if `search` wants them, those that it finds for whole lanes. Each is frozen in one frame and in the
 /// other, and tried on all lanes.
@@ -211,7 +217,7 @@ inline unsigned Traversal::notSeparated(Seen seen, const PiecePair& pieces, unsi
   unsigned untried = mask;
   const bool whole_lanes = search.lanes.wanted && pieces.areBounded();
   const Vec3Lanes* const towards = search.lanes.towards;
-  const double slack = whole_lanes ? slackOf(seen->side(0), a, b) : 0;
+  const double slack = whole_lanes ? slackWithoutTube(seen->side(0), a, b) : 0;
   const auto separatedAlong = [&](const Vec3& n) {  // of A's frame
     if (!search.ranges) return separated(seen->side(0), a, b, n, mask);
     ++statistics().certificates;
@@ -257,6 +263,10 @@ inline unsigned Traversal::notSeparated(Seen seen, const PiecePair& pieces, unsi
       mask &= ~((first + i) & 1 ? separated(seen->side(1), b, a, n, mask) : separatedAlong(g.n));
     }
     if (whole_lanes && !towards && (mask >> lane & 1)) separatesWhole(lane);
+    if (seen->stray() > 0 && (mask >> lane & 1) && meetsInTube(seen, pieces, g, lane)) {
+      --left;
+      onOverlap(lane);
+    }
   }
   return mask;
 }

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How far the real robot and its scene may be from the model. A manager with tolerances answers for every path within
+// them (doc/PROMISE.md, "Tolerances").
+#pragma once
+
+#include <Eigen/Core>
+
+namespace fcl_artic {
+
+/// How far a joint may be from the value that the motion gives it, at each time. Both numbers are finite and at
+/// least 0.
+struct JointTolerance {
+  /// rad: of a joint that turns. Of a spherical joint and of the turn of a floating one it is the angle of the rotation
+  /// from the nominal to the real orientation.
+  double angle = 0;
+  /// m: of a joint that slides. Of planar and floating joints it is the distance of the real from the nominal origin.
+  double length = 0;
+};
+
+/// How far an object may be from the pose that it is said to have: turned by at most `angle` about a fixed point, in
+/// any direction, and then moved by at most `length`. The numbers are finite, the first two at least 0.
+struct PoseTolerance {
+  double length = 0;                                ///< m
+  double angle = 0;                                 ///< rad
+  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();  ///< The fixed point, in the object's own frame, m.
+};
+
+}  // namespace fcl_artic

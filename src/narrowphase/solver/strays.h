@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The tube around a motion: upper bounds of how much nearer two bodies may be than the motion says, where joints, poses
+// and the base may be off by their tolerances (doc/NUMERICS.md, "Tubes").
+#pragma once
+
+#include "narrowphase/solver/swept_frames.h"
+#include "narrowphase/tube.h"
+
+namespace fcl_artic {
+namespace FCL_ARTIC_ISA {
+
+class Strays : PartOfSolver {
+ public:
+  Strays(Task& task, SweptFrames& frames) : PartOfSolver(task), frames_(frames) {}
+
+  /// Whether anything strays in the query at hand.
+  bool any() const { return problem().strays && query().strays > 0; }
+  /// Of a pair's two bodies against each other. It is valid until the next one.
+  void between(PairId pair, double pose_error, Tube& tube);
+  /// Of a link against the world, over the batch.
+  double inWorld(const Body& link);
+  /// Of an obstacle's own pose.
+  double ofObstacle(int body_number) const { return any() ? query().strays * body(body_number).stray : 0; }
+  /// No obstacle's is larger.
+  double largest() const { return any() ? query().strays * problem().largest_stray : 0; }
+
+ private:
+  /// A segment grown by a ball: it holds a body.
+  struct Outline {
+    Vec3 end[2];
+    double radius;
+    double reach;  ///< the larger distance of an end from the frame's origin
+  };
+  static Outline outlineOf(const Body& body, const Placement& placement);
+  /// Upper bounds of a body's largest distance from a step's axis or centre.
+  struct Distance {
+    Lanes middle, over;
+  };
+  struct EndsInBase {
+    Vec3Lanes end[2];
+  };
+  Distance distance(const engine::SweepStep& step, const FrameLanes& frame, const EndsInBase& ends, double radius,
+                    double speed, double error) const;
+  /// What a step's tolerance counts by: times a distance if it turns, else m.
+  double strayOf(const engine::SweepStep& step) const;
+  struct Chain {
+    int sweep, step_b;
+    const Outline* a;  ///< in the base frame; null: only B is moved
+    const Outline& b;  ///< in the frame of step_b
+    double error;      ///< of points of the frames
+  };
+  /// Sums over the steps of a chain, all of which move A or all B.
+  struct Sums {
+    Lanes middle, over;
+  };
+  Sums ofSteps(const Chain& chain);
+  void direct(const Chain& chain, const Placement& inverse_a, double constant, Tube& tube);
+  double ofBase(const Body& link);
+
+  SweptFrames& frames_;
+  Buffer<Sums> sums_b_;       ///< of the steps from B on, if these move B
+  Sums all_a_, all_b_;        ///< if all steps move the one
+  Buffer<std::int32_t> way_;  ///< the steps, B's first
+  Buffer<TubeAxis> axes_;
+};
+
+inline bool turns(const engine::SweepStep& step) {
+  return step.kind == engine::StepKind::revolute || step.kind == engine::StepKind::turn;
+}
+
+inline double Strays::strayOf(const engine::SweepStep& step) const {
+  // The chord of an angle is no longer than the angle, and no longer than 2.
+  const double stray = query().strays * step.stray;
+  return turns(step) ? min(stray, 2.0) : stray;
+}
+
+/// @param placement  of the body's tree in the frame that the outline is wanted in.
+inline Strays::Outline Strays::outlineOf(const Body& body, const Placement& placement) {
+  const Mat3 R(placement.R);
+  const Vec3 t(placement.t);
+  Outline outline;
+  if (body.tree_lss) {
+    for (int i = 0; i < 2; ++i) outline.end[i] = Vec3(body.tree_lss + 3 * i);
+    outline.radius = body.tree_lss[6];
+  } else {
+    const Node& root = body.tree->nodes[0];
+    outline.end[0] = outline.end[1] = middleOf(root);
+    outline.radius = root.radius * (1 + 0x1p-22);  // a float
+  }
+  outline.reach = 0;
+  for (Vec3& end : outline.end) {
+    end = R * end + t;
+    outline.reach = max(outline.reach, norm(end) * (1 + 8 * kUlp));
+  }
+  return outline;
+}
+
+/// In the middle of a lane the axis is where the frame has it. Half a lane later the distance is another one by no more
+/// than `speed` times half the lane.
+/// @param speed  of the ends as seen from the step's frame, and more where the step's own factor cannot change the
+/// distance.
+/// @param error  of points of the frames.
+inline Strays::Distance Strays::distance(const engine::SweepStep& step, const FrameLanes& frame, const EndsInBase& ends,
+                                         double radius, double speed, double error) const {
+  Lanes square(0.0);
+  const Vec3Lanes axis = frame.R.column(2);
+  for (const Vec3Lanes& end : ends.end) {
+    const Vec3Lanes arm = end - frame.o;
+    const Vec3Lanes across = step.kind == engine::StepKind::revolute ? cross(arm, axis) : arm;
+    square = max(square, dot(across, across));
+  }
+  // Two points, the axis, and the product of both (NUMERICS, "Tubes").
+  const Lanes middle = sqrt(square) + Lanes(radius + 4 * error);
+  return {middle, middle + Lanes(speed * frames_.batch().d)};
+}
+
+/// Fix a frame between two steps of the chain. The steps on B's side of it move B as seen from there, and those on A's
+/// side move A. Each step moves its body by no more than its chord times the body's distance from its axis, as the
+/// motion has both: the steps are changed one after the other, those next to the frame first, so the ones farther out
+/// are still where the motion has them. The least sum over all such frames counts, in each lane.
+inline Strays::Sums Strays::ofSteps(const Chain& chain) {
+  const engine::SweepView& view = problem().sweeps[chain.sweep];
+  const Outline& b = chain.b;
+  const Outline* const a = chain.a;
+  way_.clear();
+  sums_b_.clear();
+  all_a_ = all_b_ = {Lanes(0.0), Lanes(0.0)};
+  if (chain.step_b < 0 || !view.strays) return all_b_;
+  const FrameLanes& carrier = frames_.of(chain.sweep, chain.step_b);  // and with it all steps on the way
+  const StepBounds& last = frames_.bounds(chain.sweep, chain.step_b);
+  EndsInBase ends_a, ends_b;
+  for (int i = 0; i < 2; ++i) ends_b.end[i] = carrier.o + carrier.R * b.end[i];
+  for (int i = 0; a && i < 2; ++i) ends_a.end[i] = spread(a->end[i]);
+  // Rounding of differences of sums over the chain.
+  const double slack = 8 * view.num_steps * kUlp;
+  const auto add = [&](const engine::SweepStep& step, const Distance& far, Sums& sums) {
+    const Lanes s(strayOf(step));
+    sums.middle = mulAdd(far.middle, s, sums.middle);
+    sums.over = mulAdd(far.over, s, sums.over);
+  };
+  const Distance one = {Lanes(1.0), Lanes(1.0)};
+  for (int i = chain.step_b; i >= 0; i = view.steps[i].parent) {
+    const engine::SweepStep& step = view.steps[i];
+    if (!(step.stray > 0)) continue;
+    const StepBounds& here = frames_.bounds(chain.sweep, i);
+    const double rate = last.rates.a * (1 + slack) - here.rates.a;
+    const double lever = last.length * (1 + slack) - here.length + b.reach;
+    const double speed = rate * lever + (last.slide_rate * (1 + slack) - here.slide_rate);
+    add(step, turns(step) ? distance(step, frames_.of(chain.sweep, i), ends_b, b.radius, speed, chain.error) : one,
+        all_b_);
+    way_.push(i);
+    sums_b_.push(all_b_);
+  }
+  Sums least = all_b_;
+  for (int k = a ? way_.size() - 1 : -1; k >= 0; --k) {
+    const engine::SweepStep& step = view.steps[way_[k]];
+    static const StepBounds kBase = {};
+    const StepBounds& before = step.parent >= 0 ? frames_.bounds(chain.sweep, step.parent) : kBase;
+    const StepBounds& here = frames_.bounds(chain.sweep, way_[k]);
+    const double speed = before.rates.a * (here.length + a->reach) + here.slide_rate;
+    add(step,
+        turns(step) ? distance(step, frames_.of(chain.sweep, way_[k]), ends_a, a->radius, speed, chain.error) : one,
+        all_a_);
+    const Sums beyond = k ? sums_b_[k - 1] : Sums{Lanes(0.0), Lanes(0.0)};
+    least.middle = min(least.middle, beyond.middle + all_a_.middle);
+    least.over = min(least.over, beyond.over + all_a_.over);
+  }
+  const Lanes room(1 + 8 * (way_.size() + 4) * kUlp);
+  const auto leaveRoom = [&](Sums& sums) {
+    sums.middle = sums.middle * room;
+    sums.over = sums.over * room;
+  };
+  leaveRoom(all_a_);
+  leaveRoom(all_b_);
+  leaveRoom(least);
+  return least;
+}
+
+/// The shares of the chain's steps by direction (after ofSteps()). A turn by at most d about u moves a point, at r from
+/// the axis, along a unit n by at most d |n.(u x r)| + (d^2 / 2) |r|; and as steps before it have turned by at most D
+/// in all, by D d |r| more. So what is no first order is less than the sum of all angles times the sum of all d |r|.
+/// @param constant  of all that has no direction.
+inline void Strays::direct(const Chain& chain, const Placement& inverse_a, double constant, Tube& tube) {
+  axes_.clear();
+  if (!way_.size()) return;
+  const engine::SweepView& view = problem().sweeps[chain.sweep];
+  const StepBounds& last = frames_.bounds(chain.sweep, chain.step_b);
+  const Mat3 R(inverse_a.R);
+  const Vec3 t(inverse_a.t);
+  double angles = 0, strays = 0, slides = 0;
+  for (int k = 0; k < way_.size(); ++k) {
+    const engine::SweepStep& step = view.steps[way_[k]];
+    const double s = query().strays * step.stray;
+    const FrameLanes& frame = frames_.of(chain.sweep, way_[k]);
+    TubeAxis& axis = axes_.grow();
+    axis.stray = s;
+    axis.slides = !turns(step);
+    axis.origin = R * frame.o + spread(t);
+    axis.axis = R * frame.R.column(2);
+    (axis.slides ? slides : strays) += s;
+    angles += axis.slides ? 0 : s;
+    if (step.kind == engine::StepKind::revolute || step.kind == engine::StepKind::prismatic) continue;
+    // A rotation about any axis, or a slide along any: without direction.
+    return axes_.clear();
+  }
+  // Half a lane later the share is another one by the speeds of all that it is made of, n among them.
+  const double reach = max(chain.a ? chain.a->reach : 0.0, chain.b.reach);
+  const double lever = last.length + reach, rate = last.rates.a;
+  const double later =
+      frames_.batch().d * (strays * (2 * rate * lever + 2 * last.D1 + rate * reach) + slides * 2 * rate);
+  const double rounding = 8 * chain.error * (strays + slides);
+  for (int s = 0; s < 2; ++s) {
+    if (!s && !chain.a) continue;
+    const Sums& all = s ? all_b_ : all_a_;
+    const double room = 1 + 8 * (way_.size() + 8) * kUlp;
+    tube.rest_middle[s] = (constant + angles * maxLane(all.middle) + rounding) * room;
+    tube.rest[s] = (constant + angles * maxLane(all.over) + later + rounding) * room;
+  }
+  tube.axes = axes_.data();
+  tube.count = axes_.size();
+}
+
+/// Of the robot's base: against the world all of the robot moves with it.
+inline double Strays::ofBase(const Body& link) {
+  const engine::BaseStray& base = problem().base;
+  if (!base.any()) return 0;
+  double stray = base.length;
+  if (base.angle > 0) {
+    const Outline outline = outlineOf(link, link.placement);
+    const Vec3Lanes pivot = spread(Vec3(base.pivot));
+    double sizes = outline.reach + outline.radius + norm(Vec3(base.pivot)), way = 0, ulps = link.placement.ulps;
+    Lanes square(0.0);
+    for (const Vec3& end : outline.end) {
+      Vec3Lanes arm = spread(end) - pivot;
+      if (link.step >= 0) {
+        const FrameLanes& frame = frames_.of(0, link.step);
+        arm = frame.o + frame.R * end - pivot;
+      }
+      square = max(square, dot(arm, arm));
+    }
+    if (link.step >= 0) {
+      const StepBounds& bounds = frames_.bounds(0, link.step);
+      way = (bounds.D1 + bounds.rates.a * outline.reach) * frames_.batch().d;
+      sizes += bounds.length;
+      ulps += bounds.ulps;
+    }
+    const double far = maxLane(sqrt(square)) + outline.radius + way + kUlp * (ulps + kPoseUlps) * sizes;
+    stray += min(query().strays * base.angle, 2.0) / query().strays * far;
+  }
+  return query().strays * stray * (1 + 16 * kUlp);
+}
+
+inline void Strays::between(PairId pair, double pose_error, Tube& tube) {
+  tube = Tube();
+  if (!any()) return;
+  const PairParts parts = problem().parts(pair);
+  const Body &A = body(parts.a), &B = body(parts.b);
+  // A in the base frame.
+  const Mat3 R = transposed(Mat3(parts.inverse_a->R));
+  const Vec3 t = -(R * Vec3(parts.inverse_a->t));
+  Placement placement_a = *parts.inverse_a;
+  for (int i = 0; i < 3; ++i) R[i].store(placement_a.R + 3 * i);
+  t.store(placement_a.t);
+  const Outline a = outlineOf(A, placement_a), b = outlineOf(B, *parts.placement_b);
+  // An obstacle that is larger than the link is not worth the work: nearly always the steps move the link by less.
+  const bool both = !problem().isScenePair(pair) || a.radius < b.radius;
+  const Chain chain = {parts.sweep, parts.step_b, both ? &a : nullptr, b, pose_error};
+  const Sums least = ofSteps(chain);
+  const bool links = A.mover >= 0 && task_.isLink(A.mover);
+  const double poses = (query().strays * (A.stray + B.stray) + (links ? 0 : ofBase(B))) * (1 + 8 * kUlp);
+  tube.middle = least.middle + Lanes(poses);
+  tube.over = (maxLane(least.over) + poses) * (1 + 2 * kUlp);
+  direct(chain, *parts.inverse_a, poses, tube);
+}
+
+inline double Strays::inWorld(const Body& link) {
+  if (!any()) return 0;
+  const Outline outline = outlineOf(link, link.placement);
+  double error = 0;
+  if (link.step >= 0) {
+    const StepBounds& bounds = frames_.bounds(0, link.step);
+    const double sizes = bounds.length + outline.reach + outline.radius;
+    error = kUlp * (bounds.ulps + link.placement.ulps + kPoseUlps) * sizes + kLeastLength;
+  }
+  const double of_steps = maxLane(ofSteps({0, link.step, nullptr, outline, error}).over);
+  return (of_steps + query().strays * link.stray + ofBase(link)) * (1 + 8 * kUlp);
+}
+
+}  // namespace FCL_ARTIC_ISA
+}  // namespace fcl_artic

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "setup/tube.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+
+#include "numerics/constants.h"
+#include "numerics/shown.h"
+
+namespace fcl_artic {
+namespace {
+
+void requireNumber(double x, const std::string& what) {
+  if (std::isfinite(x) && x >= 0) return;
+  throw std::invalid_argument(what + " is " + shown(x) + ", not a number >= 0");
+}
+
+bool turns(JointType type) {
+  return type != JointType::fixed && type != JointType::prismatic;
+}
+
+bool slides(JointType type) {
+  return type == JointType::prismatic || type == JointType::planar || type == JointType::floating;
+}
+
+JointTolerance restrictTo(JointType type, const JointTolerance& tolerance) {
+  return {turns(type) ? tolerance.angle : 0, slides(type) ? tolerance.length : 0};
+}
+
+void requirePose(const PoseTolerance& tolerance, const std::string& of) {
+  requireNumber(tolerance.length, "the length of the tolerance of " + of);
+  requireNumber(tolerance.angle, "the angle of the tolerance of " + of);
+  if (!tolerance.pivot.allFinite())
+    throw std::invalid_argument("the pivot of the tolerance of " + of + " is not finite");
+}
+
+template <class Tolerance>
+bool strays(const Tolerance& tolerance) {
+  return tolerance.angle > 0 || tolerance.length > 0;
+}
+
+const Joint& jointNamed(const KinematicTree& tree, const std::string& name, const std::string& what) {
+  const JointId joint = tree.findJoint(name);
+  if (joint < 0) throw std::invalid_argument(what + ": robot '" + tree.name() + "' has no joint '" + name + "'");
+  return tree.joint(joint);
+}
+
+void requireFits(const Joint& joint, const JointTolerance& tolerance, const std::string& what) {
+  const std::string of = what + ": joint '" + joint.name + "' ";
+  if (joint.mimics)
+    throw std::invalid_argument(of + "follows '" + joint.mimic.master + "': set that joint's tolerance");
+  if (joint.type == JointType::fixed) throw std::invalid_argument(of + "is fixed");
+  if (tolerance.length > 0 && !slides(joint.type)) {
+    throw std::invalid_argument(of + "does not slide: its tolerance is an angle");
+  }
+  if (tolerance.angle > 0 && !turns(joint.type)) {
+    throw std::invalid_argument(of + "does not turn: its tolerance is a length");
+  }
+}
+
+}  // namespace
+
+void NamedTolerances::setAllJoints(const JointTolerance& tolerance) {
+  requireNumber(tolerance.angle, "the angle of the joints' tolerance");
+  requireNumber(tolerance.length, "the length of the joints' tolerance");
+  of_all_joints_ = tolerance;
+}
+
+void NamedTolerances::setJoint(const KinematicTree& tree, const std::string& name, const JointTolerance& tolerance,
+                               const std::string& what) {
+  requireNumber(tolerance.angle, "the angle of the tolerance of '" + name + "'");
+  requireNumber(tolerance.length, "the length of the tolerance of '" + name + "'");
+  requireFits(jointNamed(tree, name, what), tolerance, what);
+  of_joint_[name] = tolerance;
+}
+
+void NamedTolerances::setBase(const PoseTolerance& tolerance) {
+  requirePose(tolerance, "the base");
+  of_base_ = tolerance;
+}
+
+void NamedTolerances::setObject(const std::string& name, const PoseTolerance& tolerance) {
+  requirePose(tolerance, "'" + name + "'");
+  of_object_[name] = tolerance;
+}
+
+void NamedTolerances::clear() {
+  *this = NamedTolerances();
+}
+
+void NamedTolerances::keep(const std::function<bool(const std::string& name)>& isKept) {
+  for (auto at = of_object_.begin(); at != of_object_.end();) {
+    at = isKept(at->first) ? std::next(at) : of_object_.erase(at);
+  }
+}
+
+bool NamedTolerances::any() const {
+  const auto anyOf = [](const auto& named) {
+    return std::any_of(named.begin(), named.end(), [](const auto& entry) { return strays(entry.second); });
+  };
+  return strays(of_all_joints_) || strays(of_base_) || anyOf(of_joint_) || anyOf(of_object_);
+}
+
+TreeStrays NamedTolerances::straysOf(const KinematicTree& tree) const {
+  TreeStrays of;
+  for (const auto& [name, tolerance] : of_joint_) {
+    requireFits(jointNamed(tree, name, "setup()"), tolerance, "setup()");
+  }
+  const auto ownOf = [&](const Joint& joint) {
+    const auto own = of_joint_.find(joint.name);
+    return restrictTo(joint.type, own == of_joint_.end() ? of_all_joints_ : own->second);
+  };
+  bool any = false;
+  std::vector<JointTolerance> of_joint(static_cast<std::size_t>(tree.numJoints()));
+  std::vector<double> of_variable(static_cast<std::size_t>(tree.dof()), 0);
+  for (JointId j = 0; j < tree.numJoints(); ++j) {
+    const Joint& joint = tree.joint(j);
+    JointTolerance& own = of_joint[static_cast<std::size_t>(j)];
+    if (!joint.mimics) {
+      own = ownOf(joint);
+      any = any || strays(own);
+      const auto first = static_cast<std::size_t>(std::max(tree.jointVariable(j), 0));
+      const auto count = static_cast<std::size_t>(tree.numVariables(j));
+      for (std::size_t k = 0; k < count && strays(own); ++k) {
+        of_variable[first + k] = count == 1 ? own.angle + own.length : std::numeric_limits<double>::infinity();
+      }
+    }
+  }
+  if (!any) return of;
+  // A joint that follows another one strays by the multiple of what that one's variable does.
+  for (JointId j = 0; j < tree.numJoints(); ++j) {
+    const Joint& joint = tree.joint(j);
+    if (!joint.mimics) continue;
+    const double value =
+        std::abs(joint.mimic.multiplier) * of_variable[static_cast<std::size_t>(tree.jointVariable(j))] * (1 + kUlp);
+    of_joint[static_cast<std::size_t>(j)] = restrictTo(joint.type, {value, value});
+  }
+  of.of_joint = std::move(of_joint);
+  of.of_variable = std::move(of_variable);
+  return of;
+}
+
+double NamedTolerances::strayOf(const std::string& object, const ShapeTree& shape) const {
+  const auto found = of_object_.find(object);
+  if (found == of_object_.end()) return 0;
+  const auto& [length, angle, pivot] = found->second;
+  // The root's box holds the geometry. The chord of an angle is no longer than the angle, and no longer than 2: but a
+  // query may take a part of a large angle (engine::Query::strays), so the 2 does not count here.
+  const engine::Node& root = shape.view().nodes[0];
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double far = std::max(std::abs(root.lo[k] - pivot[k]), std::abs(root.hi[k] - pivot[k]));
+    square += far * far;
+  }
+  return (length + (angle > 0 ? angle * std::sqrt(square) : 0)) * (1 + 8 * kUlp);
+}
+
+}  // namespace fcl_artic

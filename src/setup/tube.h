@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Tolerances of joints and of objects' poses: as the caller sets them, by names; and as set-up and queries read them.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "fcl_artic/kinematic_tree.h"
+#include "fcl_artic/tube.h"
+#include "geometry/shape_tree.h"
+
+namespace fcl_artic {
+
+/// How far joints stray, in the order of a tree's joints and variables.
+struct TreeStrays {
+  std::vector<JointTolerance> of_joint;  ///< empty: none strays
+  /// rad or m, by variable, the tolerance of a joint with one variable; infinity where a joint with several variables
+  /// strays. Empty: no joint strays.
+  std::vector<double> of_variable;
+};
+
+/// Tolerances by the names of joints and of objects.
+class NamedTolerances {
+ public:
+  /// Of all joints that have none of their own: turning ones by the angle, sliding ones by the length.
+  /// @throws std::invalid_argument: a number negative or not finite.
+  void setAllJoints(const JointTolerance& tolerance);
+  /// @throws std::invalid_argument beginning with `what`: the tree has no such joint; a joint that is fixed or mimics
+  ///   another one; a length for a joint that only turns, an angle for one that only slides; a number negative or not
+  ///   finite.
+  void setJoint(const KinematicTree& tree, const std::string& joint, const JointTolerance& tolerance,
+                const std::string& what);
+  /// @throws std::invalid_argument: a number negative or not finite.
+  void setBase(const PoseTolerance& tolerance);
+  const PoseTolerance& base() const { return of_base_; }
+  /// @throws std::invalid_argument: a number negative or not finite.
+  void setObject(const std::string& name, const PoseTolerance& tolerance);
+  const JointTolerance& ofAllJoints() const { return of_all_joints_; }
+  const std::map<std::string, JointTolerance>& ofJoints() const { return of_joint_; }
+  const std::map<std::string, PoseTolerance>& ofObjects() const { return of_object_; }
+  void clear();
+  /// Forgets those of objects of other names than these.
+  void keep(const std::function<bool(const std::string& name)>& isKept);
+
+  /// Some joint or object strays.
+  bool any() const;
+  /// @throws std::invalid_argument: a joint with a tolerance is in the tree no more, or is another one by now.
+  TreeStrays straysOf(const KinematicTree& tree) const;
+  /// Upper bound of how far any point of an object's geometry may be from where the object's pose puts it, m.
+  /// @param shape  in the object's own frame.
+  double strayOf(const std::string& object, const ShapeTree& shape) const;
+
+ private:
+  JointTolerance of_all_joints_;
+  PoseTolerance of_base_;
+  std::map<std::string, JointTolerance> of_joint_;
+  std::map<std::string, PoseTolerance> of_object_;
+};
+
+}  // namespace fcl_artic

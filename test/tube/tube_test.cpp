@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Tolerances of joints, base and objects where the largest free one can be written down.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/halfspace.h>
+
+#include "../query/arms.h"
+
+namespace fcl_artic {
+namespace tube_test {
+namespace {
+
+using namespace fcl_artic::test;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+/// A ball of radius `kRadius` at the end of an arm of length 1 that turns about z.
+constexpr double kRadius = 0.01;
+
+struct OneTurn {
+  std::shared_ptr<KinematicTree> tree = std::make_shared<KinematicTree>("arm");
+  std::shared_ptr<fcl::CollisionObjectd> tip = ball(kRadius);
+  std::unique_ptr<ArticulatedCollisionManager> manager;
+
+  explicit OneTurn(JointType type = JointType::revolute) {
+    tree->addLink("base");
+    tree->addLink("arm");
+    tree->addJoint(makeJoint("joint", type, "base", "arm", Vector3d::UnitZ()));
+    manager = std::make_unique<ArticulatedCollisionManager>(tree);
+    manager->bind("arm", tip, pose(Vector3d::UnitX()));
+  }
+  CertifiedResult turn(double from, double to) {
+    manager->setup();
+    return ask(*manager, VectorXd::Constant(1, from), VectorXd::Constant(1, to));
+  }
+};
+
+double angleOf(const VectorXd& q) {
+  return q[0];
+}
+
+TEST(Tube, OneTurnBeforeABall) {
+  OneTurn arm;
+  const double at = 1.2;
+  const auto obstacle = ball(kRadius, Vector3d(std::cos(at), std::sin(at), 0));
+  arm.manager->registerObject(obstacle.get(), "ball");
+  // They touch where the chord of the angle between them is two radii.
+  const double touch = at - 2 * std::asin(kRadius), end = touch - 0.05;
+  EXPECT_TRUE(arm.turn(0, end).isFree());
+  // The bound takes the chord of the tolerance at the ball's farthest point, and the gap along the chord between both.
+  const double gap = 2 * std::sin(0.5 * (at - end)) - 2 * kRadius, largest = gap / (1 + kRadius);
+  arm.manager->setJointTolerances({0.99 * largest, 0});
+  EXPECT_TRUE(arm.turn(0, end).isFree());
+  arm.manager->setJointTolerances({1.01 * 0.05, 0});
+  const CertifiedResult hit = arm.turn(0, end);
+  ASSERT_EQ(hit.status, Status::contact);
+  ASSERT_TRUE(hit.certain);
+  const VectorXd witness = hit.contacts.at(0).q_witness;
+  ASSERT_EQ(witness.size(), 1);
+  EXPECT_GE(angleOf(witness), touch - 1e-9);
+  EXPECT_LE(angleOf(witness) - hit.t_upper * end, 1.01 * 0.05 * (1 + 1e-12));
+  EXPECT_GE(hit.t_upper, (touch - 1.01 * 0.05) / end - 1e-9) << "before, all of the tube is free";
+  // A joint's own tolerance counts in place of all joints'; without any the answer is the first one again.
+  arm.manager->setJointTolerance("joint", {});
+  EXPECT_TRUE(arm.turn(0, end).isFree());
+  arm.manager->resetTolerances();
+  arm.manager->setJointTolerances({1.01 * 0.05, 0});
+  EXPECT_FALSE(arm.turn(0, end).isFree());
+  arm.manager->resetTolerances();
+  EXPECT_TRUE(arm.turn(0, end).isFree());
+}
+
+TEST(Tube, ASlideBeforeAHalfspace) {
+  for (const double tolerance : {0.0999, 0.1001}) {
+    OneTurn arm(JointType::prismatic);
+    const auto wall = object(std::make_shared<fcl::Halfspaced>(-Vector3d::UnitZ(), -1));  // z >= 1
+    arm.manager->registerObject(wall.get(), "wall");
+    arm.manager->setJointTolerances({0, tolerance});
+    const CertifiedResult result = arm.turn(0, 1 - kRadius - 0.1);
+    EXPECT_EQ(result.isFree(), tolerance < 0.1) << tolerance;
+    if (!result.isFree()) {
+      ASSERT_TRUE(result.certain);
+      EXPECT_NEAR(result.contacts.at(0).q_witness[0], 1 - kRadius, 2e-4);
+    }
+  }
+}
+
+TEST(Tube, ABodyOnTheAxisIsNotMoved) {
+  OneTurn arm;
+  const auto hub = ball(0.1);
+  arm.manager->bind("arm", hub, pose(Vector3d(0, 0, 1)));
+  const auto obstacle = ball(0.1, Vector3d(0.25, 0, 1));
+  arm.manager->registerObject(obstacle.get(), "ball");
+  // The hub is 0.05 away, and its farthest point from the axis at 0.1.
+  arm.manager->setJointTolerances({0.45, 0});
+  EXPECT_TRUE(arm.turn(1.5, 1.6).isFree());
+  arm.manager->setJointTolerances({0.51, 0});
+  const CertifiedResult near = arm.turn(1.5, 1.6);
+  EXPECT_FALSE(near.isFree());
+  EXPECT_FALSE(near.certain) << "no angle brings a ball nearer that turns about its own middle";
+  EXPECT_EQ(near.t_upper, 1);
+}
+
+TEST(Tube, FollowersStrayByTheirMultiplier) {
+  for (const double multiplier : {-3.0, 0.5}) {
+    auto tree = std::make_shared<KinematicTree>("two");
+    for (const char* link : {"base", "one", "two"}) tree->addLink(link);
+    tree->addJoint(makeJoint("leader", JointType::prismatic, "base", "one", Vector3d::UnitX()));
+    Joint follower = makeJoint("follower", JointType::prismatic, "base", "two", Vector3d::UnitY());
+    follower.mimics = true;
+    follower.mimic = {"leader", multiplier, 0};
+    tree->addJoint(follower);
+    ArticulatedCollisionManager manager(tree);
+    const auto tip = ball(0.1), obstacle = ball(0.1, Vector3d(0, 0.4, 0));
+    manager.bind("two", tip);
+    manager.registerObject(obstacle.get(), "ball");
+    const double gap = 0.2, largest = gap / std::abs(multiplier);
+    for (const double part : {0.999, 1.001}) {
+      manager.setJointTolerances({0, part * largest});
+      manager.setup();
+      const CertifiedResult result = ask(manager, VectorXd::Zero(1), VectorXd::Zero(1));
+      EXPECT_EQ(result.isFree(), part < 1) << multiplier;
+      EXPECT_EQ(result.certain, part > 1) << multiplier;
+    }
+    EXPECT_THROW(manager.setJointTolerance("follower", {0, 0.1}), std::invalid_argument);
+  }
+}
+
+TEST(Tube, JointsBetweenTwoBodiesAloneCount) {
+  // Both tips are carried by the first joint; only the second moves them against each other.
+  auto tree = std::make_shared<KinematicTree>("two");
+  for (const char* link : {"base", "one", "two"}) tree->addLink(link);
+  tree->addJoint(makeJoint("shoulder", JointType::revolute, "base", "one", Vector3d::UnitZ()));
+  tree->addJoint(makeJoint("wrist", JointType::revolute, "one", "two", Vector3d::UnitZ(), pose(Vector3d(10, 0, 0))));
+  ArticulatedCollisionManager manager(tree);
+  const auto a = ball(0.1), b = ball(0.1);
+  manager.bind("one", a, pose(Vector3d(10, 0.5, 0)));
+  manager.bind("two", b, pose(Vector3d(0.5, 0, 0)));
+  AllowedCollisionMatrix checked;
+  checked.disallow("one", "two");
+  manager.setAllowedCollisions(checked);
+  const VectorXd still = VectorXd::Zero(2);
+  const double gap = std::sqrt(0.5) - 0.2;
+  for (const double part : {0.9, 1.8}) {
+    manager.setJointTolerances({part * gap / 0.6, 0});
+    manager.setup();
+    EXPECT_EQ(ask(manager, still, still).isFree(), part < 1);
+  }
+}
+
+TEST(Tube, BaseAndObjects) {
+  OneTurn arm;
+  const auto obstacle = ball(kRadius, Vector3d(1, 0.1, 0));
+  arm.manager->registerObject(obstacle.get(), "ball");
+  const double gap = 0.1 - 2 * kRadius;
+  const auto expect = [&](bool free) { EXPECT_EQ(arm.turn(0, 0).isFree(), free); };
+  for (const double part : {0.99, 1.01}) {
+    const bool free = part < 1;
+    arm.manager->setBaseTolerance({part * gap, 0, Vector3d::Zero()});
+    expect(free);
+    arm.manager->setBaseTolerance({0, part * gap / (1 + kRadius), Vector3d::Zero()});
+    expect(free);
+    arm.manager->setBaseTolerance({0, part * gap / (9 + kRadius), Vector3d(-8, 0, 0)});
+    expect(free);
+    arm.manager->setBaseTolerance({});
+    arm.manager->setObjectTolerance("ball", {part * gap, 0, Vector3d::Zero()});
+    expect(free);
+    // From the pivot, the farthest corner of the ball's box counts.
+    const double far = std::sqrt(std::pow(1 + kRadius, 2) + 2 * std::pow(kRadius, 2));
+    arm.manager->setObjectTolerance("ball", {0, (free ? 0.999 : 1.01) * gap / far, Vector3d(1, 0, 0)});
+    expect(free);
+    arm.manager->setObjectTolerance("ball", {});
+  }
+  // They add up.
+  arm.manager->setBaseTolerance({0.4 * gap, 0, Vector3d::Zero()});
+  arm.manager->setObjectTolerance("ball", {0.4 * gap, 0, Vector3d::Zero()});
+  expect(true);
+  arm.manager->setJointTolerances({0.3 * gap, 0});
+  expect(false);
+  // An object's tolerance goes with it.
+  arm.manager->setJointTolerances({});
+  arm.manager->setObjectTolerance("ball", {0.9 * gap, 0, Vector3d::Zero()});
+  expect(false);
+  arm.manager->unregisterObject(obstacle.get());
+  arm.manager->registerObject(obstacle.get(), "ball");
+  expect(true);
+}
+
+TEST(Tube, WhatDoesNotKnowTolerancesRefuses) {
+  OneTurn arm;
+  const auto obstacle = ball(kRadius, Vector3d(1.1, 0, 0));
+  arm.manager->registerObject(obstacle.get(), "ball");
+  arm.manager->setJointTolerances({0.01, 0});
+  arm.manager->setup();
+  const VectorXd q = VectorXd::Zero(1);
+  CertifiedRequest redon, certificate;
+  redon.method = Method::redon2004;
+  certificate.certificate = true;
+  EXPECT_THROW(ask(*arm.manager, q, q, redon), std::invalid_argument);
+  EXPECT_THROW(ask(*arm.manager, q, q, certificate), std::invalid_argument);
+}
+
+TEST(Tube, BadTolerancesChangeNothing) {
+  OneTurn arm;
+  const auto obstacle = ball(kRadius, Vector3d(1, 0.1, 0));
+  arm.manager->registerObject(obstacle.get(), "ball");
+  arm.manager->setJointTolerance("joint", {0.01, 0});
+  ArticulatedCollisionManager& m = *arm.manager;
+  for (const double bad : {-1e-3, std::nan(""), HUGE_VAL}) {
+    EXPECT_THROW(m.setJointTolerances({bad, 0}), std::invalid_argument);
+    EXPECT_THROW(m.setJointTolerances({0, bad}), std::invalid_argument);
+    EXPECT_THROW(m.setJointTolerance("joint", {bad, 0}), std::invalid_argument);
+    EXPECT_THROW(m.setBaseTolerance({bad, 0, Vector3d::Zero()}), std::invalid_argument);
+    EXPECT_THROW(m.setObjectTolerance("ball", {0, bad, Vector3d::Zero()}), std::invalid_argument);
+    EXPECT_THROW(m.setObjectTolerance("ball", {0, 0, Vector3d(0, 0, std::nan(""))}), std::invalid_argument);
+  }
+  EXPECT_THROW(m.setJointTolerance("joint", {0, 0.01}), std::invalid_argument) << "it does not slide";
+  EXPECT_THROW(m.setJointTolerance("jiont", {0.01, 0}), std::invalid_argument);
+  EXPECT_THROW(m.setObjectTolerance("arm", {0.01, 0, Vector3d::Zero()}), std::invalid_argument) << "a link";
+  EXPECT_THROW(m.setObjectTolerance("bell", {0.01, 0, Vector3d::Zero()}), std::invalid_argument);
+  EXPECT_TRUE(arm.turn(0, 0).isFree());
+  arm.manager->setBaseTolerance({0.075, 0, Vector3d::Zero()});
+  EXPECT_FALSE(arm.turn(0, 0).isFree()) << "the joint's 0.01 still counts";
+}
+
+}  // namespace
+}  // namespace tube_test
+}  // namespace fcl_artic
