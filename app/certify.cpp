@@ -296,6 +296,9 @@ int runCertify(CertifyVerb& o) {
   }
   std::vector<std::string> notes = world.notes(*manager);
   notes.insert(notes.end(), plan_notes.begin(), plan_notes.end());
+  if (const std::string tolerances = manager->describeTolerances(); !tolerances.empty()) {
+    notes.push_back("free is every path within " + tolerances);
+  }
   const CertifyReport report{tree, o.certify.request, all, notes, seconds, o.failed_only};
   UnwrittenOutputs& unwritten = world.unwritten;
   if (!o.out.empty()) unwritten.attempt([&] { writeOut(o, *manager, all); });

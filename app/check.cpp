@@ -191,6 +191,7 @@ int runCheck(CheckVerb& options) {
     });
   }
   Report report{tree, request, result, notes, {}};
+  report.tolerances = manager.describeTolerances();
   setMotion(motion, trajectory, report);
   if (clearance) report.clearance = &*clearance;
 
@@ -214,6 +215,7 @@ int runReplay(const CheckVerb& options) {
                     query.library, query.instruction_set, FCL_ARTIC_VERSION, instructionSet()));
   }
   Report report{query.manager.tree(), query.request, result, notes, {}};
+  report.tolerances = query.manager.describeTolerances();
   setMotion(query.motion, query.trajectory, report);
   print(report, options.json);
   return exitStatus(result);

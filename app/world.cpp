@@ -95,6 +95,7 @@ void addWorldOptions(CLI::App& verb, WorldOptions& o, const std::string& robot_n
       ->type_name("NAME");
   addAttachOption(verb, o.robot);
   addPairOptions(verb, o.pairs);
+  addToleranceOptions(verb, o.tolerances);
   verb.add_option("--proof-work", o.proof_work,
                   "Tests at most for the proof that one allowed pair of links never touches, as --work of srdf")
       ->group("Robot and scene")
@@ -135,6 +136,9 @@ std::string shellArguments(const WorldOptions& o) {
   add("--margins", o.pairs.margins);
   addAll("--allow", o.pairs.allowed);
   addAll("--disallow", o.pairs.disallowed);
+  addAll("--joint-tolerance", o.tolerances.joints);
+  add("--base-tolerance", o.tolerances.base);
+  addAll("--tolerance", o.tolerances.objects);
   if (o.proof_work != WorldOptions().proof_work) add("--proof-work", fmt::format("{}", o.proof_work));
   return text;
 }
@@ -174,6 +178,7 @@ SceneOptions sceneOptions(const WorldOptions& options) {
 World::World(const WorldOptions& options)
     : options_(options),
       pairs_(readPairSettings(options.pairs)),
+      tolerances_(readToleranceSettings(options.tolerances)),
       solids_(options.solids.begin(), options.solids.end()) {}
 
 void World::readRobot() {
@@ -260,6 +265,7 @@ ArticulatedCollisionManager World::makeManager(const std::function<void(Articula
   scene.addTo(manager);
   attachLast(attachments, scene, manager);
   pairs_.apply(scene, manager);
+  tolerances_.apply(scene, manager);
   if (change) change(manager);
   manager.setup();
   return manager;

@@ -15,12 +15,14 @@
 #include "outputs.h"
 #include "pair_options.h"
 #include "robot_options.h"
+#include "tolerance_options.h"
 
 namespace fcl_artic::app {
 
 struct WorldOptions {
   RobotOptions robot;
   PairOptions pairs;
+  ToleranceOptions tolerances;
   std::string auto_srdf;                              ///< file to write; empty: none
   std::uint64_t proof_work = LinkPairOptions().work;  ///< tests at most for the proof of one pair of links
   std::vector<std::string> scenes, solids;            ///< files; names of links and obstacles
@@ -30,8 +32,8 @@ struct WorldOptions {
 };
 
 /// Adds the whole group "Robot and scene": the robot's options, --auto-srdf, --scene, --scale, --collada-up-axis,
-/// --unknown-cells, --point-radius, --solid-meshes, --solid, --attach and those of addPairOptions(). Each takes one
-/// value, so that a verb's own arguments may stand after it.
+/// --unknown-cells, --point-radius, --solid-meshes, --solid, --attach and those of addPairOptions() and
+/// addToleranceOptions(). Each takes one value, so that a verb's own arguments may stand after it.
 /// @param robot_names  of the robot's option.
 void addWorldOptions(CLI::App& verb, WorldOptions& options, const std::string& robot_names = kRobotNames);
 
@@ -52,7 +54,7 @@ SceneOptions sceneOptions(const WorldOptions& options);
 class World {
  public:
   /// @param options  must outlive this object.
-  /// @throws as readPairSettings().
+  /// @throws as readPairSettings() and readToleranceSettings().
   explicit World(const WorldOptions& options);
 
   /// Reads the robot, proves pairs of links if the request's queries use that, and reads the obstacles.
@@ -78,6 +80,7 @@ class World {
   /// @param manager  of this world.
   std::vector<std::string> notes(const ArticulatedCollisionManager& manager) const;
   const PairSettings& pairs() const { return pairs_; }
+  const ToleranceSettings& tolerances() const { return tolerances_; }
 
   Robot robot;
   Scene scene;                          ///< The last obstacles are carried, one for each attachment.
@@ -89,6 +92,7 @@ class World {
 
   const WorldOptions& options_;
   const PairSettings pairs_;
+  const ToleranceSettings tolerances_;
   std::set<std::string> solids_;  ///< names that are still to be found
 };
 

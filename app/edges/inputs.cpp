@@ -165,6 +165,7 @@ std::string robotHash(const World& read) {
   }
   addAllowed(read.robot.allowed, content);
   content.add(read.pairs().text());
+  if (read.tolerances().any()) content.add(read.tolerances().text());
   return content.hash();
 }
 

@@ -177,7 +177,8 @@ Json contactJson(const KinematicTree& tree, const CertifiedContact& c) {
           {"nearest1", vectorJson(c.nearest1)},
           {"nearest2", vectorJson(c.nearest2)},
           {"approach_speed", c.approach_speed},
-          {"feature", toString(c.feature)}};
+          {"feature", toString(c.feature)},
+          {"q_witness", c.q_witness.size() > 0 ? valuesJson(tree, c.q_witness) : Json()}};
 }
 
 Json neighboursJson(const CertifiedResult& result) {
@@ -248,6 +249,10 @@ std::string headline(const Report& r) {
       if (result.t_upper <= r.begin) {
         return fmt::format("CONTACT: at the start, t = {:g}{}.", r.begin, result.certain ? ", proven" : "");
       }
+      if (result.certain && !r.tolerances.empty()) {
+        return fmt::format("CONTACT within the tolerances: from t = {:.6g} on, proven by t = {:.6g}.", result.t_lower,
+                           result.t_upper);
+      }
       // At the start there is no before.
       const bool at_start = result.t_lower <= r.begin;
       return result.certain
@@ -270,10 +275,18 @@ std::string textReport(const Report& r) {
   const CertifiedResult& result = r.result;
   std::string text = text::oneLine(headline(r)) + "\n";
   if (const std::string scope = scopeText(r.request); r.request_known && !scope.empty()) text += entry("scope", scope);
+  if (!r.tolerances.empty()) {
+    text += entry("tolerance", fmt::format("{}every path within {}", result.isFree() ? "free is " : "asked of ",
+                                           r.tolerances));
+  }
   const bool several = result.contacts.size() > 1;
   for (std::size_t i = 0; i < result.contacts.size(); ++i) {
     if (several) text += fmt::format(" contact {} of {}\n", i + 1, result.contacts.size());
     text += contactText(r.tree, result.contacts[i]);
+    if (const Eigen::VectorXd& q = result.contacts[i].q_witness; q.size() > 0) {
+      text += entry("touch", fmt::format("within the tolerances, at t = {:.12g}: {}", result.contacts[i].t_upper,
+                                         jointsText(r.tree, q)));
+    }
   }
   if (r.clearance) text += entry("clearance", clearanceText(r.tree, *r.clearance));
   if (result.status != Status::free) {
@@ -314,6 +327,7 @@ nlohmann::ordered_json jsonReport(const Report& r) {
           {"unproven_allowed_pairs", result.unproven_allowed_pairs},
           {"unproven_neighbours", neighboursJson(result)},
           {"certificate", result.certificate ? certificateJson(*result.certificate) : Json()},
+          {"tolerances", r.tolerances.empty() ? Json() : Json(r.tolerances)},
           {"request", r.request_known ? requestJson(r.request) : Json()},
           {"visibility", visibilityJson(r.request.visibility, result.statistics)},
           {"statistics", statisticsJson(r)},

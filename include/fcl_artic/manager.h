@@ -228,6 +228,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void setObjectTolerance(const std::string& name, const PoseTolerance& tolerance);
   /// Forgets the tolerances of joints, the base and objects. Needs setup().
   void resetTolerances();
+  /// Returns all tolerances in one line for people, as "joints 0.3 deg, base 2 mm"; empty if there is none.
+  std::string describeTolerances() const;
 
   /// Selects the culler of stage 2, culling by visibility (CertifiedRequest::visibility); null: the CPU culler, which
   /// is the default. Effective at once. The manager forgets what VisibilityMode::automatic has measured.

@@ -61,6 +61,7 @@ struct LinkPair {
   std::int32_t step_b = -1;  ///< step of that sweep that carries B; -1: fixed to the base frame
   Placement inverse_a;       ///< base frame in A's tree frame
   Placement placement_b;     ///< B's tree frame in its step's frame
+  double stray = 0;          ///< m: their strays bring them nearer by no more, whatever the motion; infinity: not known
 };
 
 /// Two movers.

@@ -155,6 +155,10 @@ void ArticulatedCollisionManager::resetTolerances() {
   impl_->setup.tolerancesChanged();
 }
 
+std::string ArticulatedCollisionManager::describeTolerances() const {
+  return impl_->registry.tolerances().text();
+}
+
 void ArticulatedCollisionManager::setVisibility(std::shared_ptr<const VisibilityCuller> culler) {
   impl_->stage2 = std::make_unique<Stage2>(culler ? std::move(culler) : std::make_shared<VisibilityCuller>());
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "geometry/solid_space.h"
+#include "numerics/constants.h"
 #include "threads/parallel.h"
 
 namespace fcl_artic {
@@ -57,6 +58,40 @@ void Setup::setStrays(const Registry& registry) {
     largest_stray_ = std::max(largest_stray_, bodies_[i].stray);
   }
   any_stray_ = tolerances.any();
+  for (engine::LinkPair& pair : link_pairs_) pair.stray = any_stray_ ? strayOf(pair) : 0;
+}
+
+/// Upper bound of how much nearer the strays of all steps between two bodies bring them (doc/NUMERICS.md, "Tubes"), by
+/// the largest distances from the steps' axes that the lengths between them allow.
+double Setup::strayOf(const engine::LinkPair& pair) const {
+  const engine::SweepView sweep = sweeps_[static_cast<std::size_t>(pair.sweep)].view();
+  const engine::Body &a = bodies_[static_cast<std::size_t>(pair.a)], &b = bodies_[static_cast<std::size_t>(pair.b)];
+  if (pair.a >= static_cast<std::int32_t>(num_links_))
+    return kInfinity;  // an obstacle that moves: the base strays, too
+  struct Step {
+    double stray, length;
+    bool turns;
+  };
+  std::vector<Step> steps;  // B's first
+  for (std::int32_t i = pair.step_b; i >= 0; i = sweep.steps[i].parent) {
+    const engine::SweepStep& step = sweep.steps[i];
+    const bool turns = step.kind == engine::StepKind::revolute || step.kind == engine::StepKind::turn;
+    steps.push_back({step.stray, step.length, turns});
+    if (!turns) return kInfinity;  // a motion may go beyond its limits
+  }
+  std::vector<double> moves_a(steps.size() + 1, 0);  // entry k: by the steps from k on, if they move A
+  double reach_a = pair.inverse_a.length + a.tree->extent;
+  for (std::size_t k = steps.size(); k-- > 0;) {
+    reach_a += steps[k].length;
+    moves_a[k] = moves_a[k + 1] + std::min(steps[k].stray, 2.0) * reach_a;
+  }
+  double reach_b = pair.placement_b.length + b.tree->extent, moves_b = 0, least = moves_a[0];
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    moves_b += std::min(steps[k].stray, 2.0) * reach_b;
+    reach_b += steps[k].length;
+    least = std::min(least, moves_b + moves_a[k + 1]);
+  }
+  return (least + a.stray + b.stray) * (1 + 4 * static_cast<double>(steps.size() + 4) * kUlp);
 }
 
 void Setup::readSolids(const Registry& registry) {

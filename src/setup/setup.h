@@ -77,6 +77,7 @@ class Setup {
   void buildSelfPairs(const Registry& registry, const std::vector<Carrier>& carriers, const IsChecked& checked);
   void listMovers();
   void setStrays(const Registry& registry);
+  double strayOf(const engine::LinkPair& pair) const;
   void readSolids(const Registry& registry);
   // setup_scene.cpp: what depends on the obstacles.
   void buildScene(const Registry& registry);

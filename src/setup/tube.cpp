@@ -104,6 +104,21 @@ bool NamedTolerances::any() const {
   return strays(of_all_joints_) || strays(of_base_) || anyOf(of_joint_) || anyOf(of_object_);
 }
 
+std::string NamedTolerances::text() const {
+  std::string all;
+  const auto add = [&](const std::string& name, double angle, double length) {
+    if (!(angle > 0) && !(length > 0)) return;
+    all += (all.empty() ? "" : ", ") + name;
+    if (length > 0) all += " " + shown(1000 * length) + " mm";
+    if (angle > 0) all += std::string(length > 0 ? " and " : " ") + shown(angle * 57.29577951308232) + " deg";
+  };
+  add(of_joint_.empty() ? "joints" : "other joints", of_all_joints_.angle, of_all_joints_.length);
+  for (const auto& [name, own] : of_joint_) add("'" + name + "'", own.angle, own.length);
+  add("base", of_base_.angle, of_base_.length);
+  for (const auto& [name, own] : of_object_) add("'" + name + "'", own.angle, own.length);
+  return all;
+}
+
 TreeStrays NamedTolerances::straysOf(const KinematicTree& tree) const {
   TreeStrays of;
   for (const auto& [name, tolerance] : of_joint_) {

@@ -69,9 +69,10 @@ class StageOne : PartOfSolver {
   void cullPatches(const Entry& large, double margin, const TreeView& tree, const SweptLss& lss, Buffer<Entry>& open);
   void openPatch(const Entry& patch, double radius, const NearestToBox& nearest, Buffer<Entry>& open);
   void cullLinks(Buffer<Entry>& open);
-  /// A pair's margin, and how far the obstacle strays. (The link's line swept sphere has the link's own strays.)
-  double marginToObstacle(PairId pair, int obstacle) const {
-    return query().margins.of(pair) + strays_.ofObstacle(problem().obstacles[obstacle]);
+  /// If a link's line swept sphere and an obstacle are farther apart than this, their bodies are more than the pair's
+  /// margin apart in all of the tube.
+  double apartFromObstacle(PairId pair, int mover, int obstacle) const {
+    return query().margins.of(pair) + (mover_stray_[mover] + strays_.ofObstacle(problem().obstacles[obstacle]));
   }
   unsigned lssMayTouch(int mover, int obstacle_number, unsigned mask, Vec3Lanes& direction);
   void expectContact(PairId pair, int mover, const engine::StillBounds& obstacle, unsigned mask,
@@ -92,7 +93,8 @@ class StageOne : PartOfSolver {
   Buffer<SweptBox> mover_box_;
   Buffer<engine::EightBoxes> whole_boxes_;  ///< of movers over [0, 1], as MoverRow groups them
   Buffer<std::uint64_t> met_pairs_;         ///< link pairs whose movers' boxes meet, a bit each
-  Buffer<SweptLss> mover_lss_;              ///< of links
+  Buffer<SweptLss> mover_lss_;              ///< of links, where the motion has them
+  Buffer<double> mover_stray_;              ///< of links, against the world, m
   Buffer<BoxHit> met_;
   Buffer<std::int32_t> open_nodes_;
   Buffer<OpenUpper> open_upper_;
@@ -111,16 +113,14 @@ inline void StageOne::sweepMover(int mover) {
     const FrameLanes* frame = carried.step < 0 ? nullptr : &frames_.of(0, carried.step);
     sweepLss({frame, frames_.bounds(0, carried.step), problem().sweeps[0].first_order, whole().d}, carried,
              mover_lss_[mover]);
-    // It holds the link in all of the tube.
-    const double stray = strays_.inWorld(carried);
-    mover_lss_[mover].radius += stray;
+    const double stray = mover_stray_[mover] = strays_.inWorld(carried);
     if (frame) {
-      boundLss(mover_lss_[mover], margin, box);
+      boundLss(mover_lss_[mover], margin + stray, box);
       setWholeBox(mover);
       return;
     }
   }
-  const double around = margin + (task_.isLink(mover) ? strays_.inWorld(carried) : 0);  // of obstacles: the largest
+  const double around = margin + (task_.isLink(mover) ? mover_stray_[mover] : 0);  // of obstacles: the largest
   for (int k = 0; k < 3; ++k) {
     box.lo[k] = narrowDown(Lanes(carried.lo[k] - around));
     box.hi[k] = narrowUp(Lanes(carried.hi[k] + around));
@@ -193,7 +193,8 @@ inline unsigned StageOne::lssMayTouch(int mover, int obstacle_number, unsigned m
   const engine::StillBounds& obstacle = problem().still_bounds[obstacle_number];
   NearestToBox nearest;
   const WorldSeen world = {obstacle.inverse};
-  mask &= ~certainlyApart(mover_lss_[mover], obstacle.box, world, marginToObstacle(pair, obstacle_number), nearest);
+  mask &=
+      ~certainlyApart(mover_lss_[mover], obstacle.box, world, apartFromObstacle(pair, mover, obstacle_number), nearest);
   direction = nearest.direction;
   if (mask && obstacle.solid) expectContact(pair, mover, obstacle, mask, nearest);
   return mask;
@@ -315,7 +316,8 @@ inline void StageOne::cullObstacles(int mover, Buffer<Entry>& open) {
     if (obstacle.entered) {
       SweptLss seen;
       seeFrom(obstacle.inverse, mover_lss_[mover], seen);
-      cullPatches({pair, 0, 0, met[i].mask}, marginToObstacle(pair, met[i].obstacle), *obstacle.tree, seen, open);
+      cullPatches({pair, 0, 0, met[i].mask}, apartFromObstacle(pair, mover, met[i].obstacle), *obstacle.tree, seen,
+                  open);
       continue;
     }
     Vec3Lanes direction;
@@ -368,7 +370,8 @@ inline void StageOne::cullLinks(Buffer<Entry>& open) {
     const bool links = task_.isLink(mover_a) && task_.isLink(mover_b);
     Lanes square;
     if (mask && links) {
-      mask &= ~certainlyApart(mover_lss_[mover_a], mover_lss_[mover_b], query().margins.of(pair), square);
+      const double stray = strays_.ofLinks(p, mover_stray_[mover_a] + mover_stray_[mover_b]);
+      mask &= ~certainlyApart(mover_lss_[mover_a], mover_lss_[mover_b], query().margins.of(pair) + stray, square);
     }
     for (int n = 0; n < num_advisors && mask; ++n) {
       const unsigned parts = advisors[n]->freePartsOf(advisors[n]->self, p);
@@ -396,9 +399,11 @@ inline void StageOne::cullLinks(Buffer<Entry>& open) {
 inline void StageOne::cull(Buffer<Entry>& open) {
   directions_.clear();
   frames_.set(whole());
+  strays_.begin();
   mover_box_.resize(problem().num_movers);
   whole_boxes_.resize((problem().num_movers + kLanes - 1) / kLanes);
   mover_lss_.resize(problem().num_scene_movers);
+  mover_stray_.resize(problem().num_scene_movers);
   const bool check_scene = query().check_scene && problem().obstacle_tree;
   if (check_scene) {
     statistics().pairs += static_cast<std::uint64_t>(problem().num_scene_pairs - problem().num_scene_allowed);
@@ -435,10 +440,10 @@ inline void sweptOver(int lane, const PointLanes* ends, double radius, engine::S
   part.radius = radius * (1 + 4 * kUlp);
 }
 
-/// A link's line swept sphere in each lane of [0, 1].
+/// A line swept sphere that holds a link in all of the tube, in each lane of [0, 1].
 inline void StageOne::sweptInWorld(int mover, engine::SweptLink* parts) const {
   const SweptLss& s = mover_lss_[mover];
-  for (int lane = 0; lane < kLanes; ++lane) sweptOver(lane, s.end, s.radius, parts[lane]);
+  for (int lane = 0; lane < kLanes; ++lane) sweptOver(lane, s.end, s.radius + mover_stray_[mover], parts[lane]);
 }
 
 /// The same of the link B of a pair of two bodies that move, seen from A's tree frame, where A stands still.

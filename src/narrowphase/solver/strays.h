@@ -4,6 +4,7 @@
 // and the base may be off by their tolerances (doc/NUMERICS.md, "Tubes").
 #pragma once
 
+#include "narrowphase/solver/swept_box.h"
 #include "narrowphase/solver/swept_frames.h"
 #include "narrowphase/tube.h"
 
@@ -18,8 +19,16 @@ class Strays : PartOfSolver {
   bool any() const { return problem().strays && query().strays > 0; }
   /// Of a pair's two bodies against each other. It is valid until the next one.
   void between(PairId pair, double pose_error, Tube& tube);
+  /// Before inWorld(), over the batch that is set.
+  void begin();
   /// Of a link against the world, over the batch.
   double inWorld(const Body& link);
+  /// Of two links against each other.
+  /// @param in_world  of both against the world, summed.
+  double ofLinks(int link_pair, double in_world) const {
+    if (!any()) return 0;
+    return min(max(query().strays, 1.0) * problem().link_pairs[link_pair].stray, in_world);
+  }
   /// Of an obstacle's own pose.
   double ofObstacle(int body_number) const { return any() ? query().strays * body(body_number).stray : 0; }
   /// No obstacle's is larger.
@@ -57,12 +66,23 @@ class Strays : PartOfSolver {
   Sums ofSteps(const Chain& chain);
   void direct(const Chain& chain, const Placement& inverse_a, double constant, Tube& tube);
   double ofBase(const Body& link);
+  /// Sums over the steps up to one, of the world's sweep.
+  struct Form {
+    bool made = false;
+    int count = 0;      ///< of steps
+    Vec3Lanes q[3], b;  ///< of |x - o|^2 across the axes, times what the steps stray: of q the upper half
+    Lanes c;
+    double strays = 0, slides = 0;  ///< of turns; of slides, m
+    double rates = 0, lengths = 0, levers = 0, slide_rates = 0;
+  };
+  const Form& formOf(int step);
 
   SweptFrames& frames_;
   Buffer<Sums> sums_b_;       ///< of the steps from B on, if these move B
   Sums all_a_, all_b_;        ///< if all steps move the one
   Buffer<std::int32_t> way_;  ///< the steps, B's first
   Buffer<TubeAxis> axes_;
+  Buffer<Form> forms_;  ///< by step of the world's sweep
 };
 
 inline bool turns(const engine::SweepStep& step) {
@@ -274,17 +294,86 @@ inline void Strays::between(PairId pair, double pose_error, Tube& tube) {
   direct(chain, *parts.inverse_a, poses, tube);
 }
 
+inline void Strays::begin() {
+  forms_.resize(any() ? problem().sweeps[0].num_steps : 0);
+  for (int i = 0; i < forms_.size(); ++i) forms_[i].made = false;
+}
+
+/// The sums of the steps up to one, made of those up to its parent.
+inline const Strays::Form& Strays::formOf(int step) {
+  way_.clear();
+  for (int i = step; i >= 0 && !forms_[i].made; i = problem().sweeps[0].steps[i].parent) way_.push(i);
+  for (int k = way_.size() - 1; k >= 0; --k) {
+    const engine::SweepStep& own = problem().sweeps[0].steps[way_[k]];
+    Form& form = forms_[way_[k]];
+    if (own.parent >= 0) {
+      form = forms_[own.parent];
+    } else {
+      form = Form();
+      form.q[0] = form.q[1] = form.q[2] = form.b = spread(Vec3(0, 0, 0));
+      form.c = Lanes(0.0);
+    }
+    form.made = true;
+    ++form.count;
+    if (!(own.stray > 0)) continue;
+    const double s = strayOf(own);
+    if (!turns(own)) {
+      form.slides += s;
+      continue;
+    }
+    const FrameLanes& frame = frames_.of(0, way_[k]);
+    const StepBounds& bounds = frames_.bounds(0, way_[k]);
+    const Vec3Lanes z = own.kind == engine::StepKind::revolute ? frame.R.column(2) : spread(Vec3(0, 0, 0));
+    // |x - o|^2 less the part along the axis.
+    const Vec3Lanes across = frame.o - z * dot(z, frame.o);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = i; j < 3; ++j) {
+        Lanes entry = z[i] * z[j] * Lanes(-s);
+        if (i == j) entry = entry + Lanes(s);
+        form.q[i][j] = form.q[i][j] + entry;
+      }
+      form.b[i] = mulAdd(across[i], Lanes(s), form.b[i]);
+    }
+    form.c = mulAdd(dot(across, frame.o), Lanes(s), form.c);
+    form.strays += s;
+    form.rates += s * bounds.rates.a;
+    form.lengths += s * bounds.length;
+    form.levers += s * bounds.rates.a * bounds.length;
+    form.slide_rates += s * bounds.slide_rate;
+  }
+  return forms_[step];
+}
+
+/// By Cauchy and Schwarz, the sum of all s_i r_i, with the distances r_i of a point from the axes, is at most the root
+/// of (sum of s_i) (sum of s_i r_i^2). The latter is a quadratic form of the point, which the steps add up to: so it
+/// costs each link the same, however long its chain is.
 inline double Strays::inWorld(const Body& link) {
   if (!any()) return 0;
   const Outline outline = outlineOf(link, link.placement);
-  double error = 0;
-  if (link.step >= 0) {
-    const StepBounds& bounds = frames_.bounds(0, link.step);
-    const double sizes = bounds.length + outline.reach + outline.radius;
-    error = kUlp * (bounds.ulps + link.placement.ulps + kPoseUlps) * sizes + kLeastLength;
+  double of_steps = 0;
+  if (link.step >= 0 && problem().sweeps[0].strays) {
+    const FrameLanes& frame = frames_.of(0, link.step);
+    const StepBounds& last = frames_.bounds(0, link.step);
+    const Form& form = formOf(link.step);
+    Lanes square(0.0);
+    for (const Vec3& end : outline.end) {
+      const Vec3Lanes x = frame.o + frame.R * end;
+      const Lanes diagonal = x[0] * x[0] * form.q[0][0] + x[1] * x[1] * form.q[1][1] + x[2] * x[2] * form.q[2][2];
+      const Lanes mixed = x[0] * x[1] * form.q[0][1] + x[0] * x[2] * form.q[0][2] + x[1] * x[2] * form.q[1][2];
+      square = max(square, diagonal + (mixed - dot(x, form.b)) * Lanes(2.0) + form.c);
+    }
+    const double lever = last.length + outline.reach, sizes = lever + outline.radius;
+    // Rounding of the form: its terms are at most strays * sizes^2 each, made of frames of these errors.
+    const double ulps = last.ulps + link.placement.ulps + kPoseUlps + 64 * form.count;
+    const double error = 16 * kUlp * ulps * form.strays * sizes * sizes + kLeastLength;
+    const double root = sqrt(form.strays * (maxLane(square) + error));
+    // As distance() has it, summed over the steps; the last term is the rounding of these differences.
+    const double speeds = form.strays * (last.rates.a * lever + last.slide_rate) - lever * form.rates -
+                          last.rates.a * form.lengths + form.levers - form.slide_rates;
+    const double rounding = 64 * form.count * kUlp * form.strays * (last.rates.a * lever + last.slide_rate);
+    of_steps = root + form.strays * outline.radius + form.slides + frames_.batch().d * (speeds + rounding);
   }
-  const double of_steps = maxLane(ofSteps({0, link.step, nullptr, outline, error}).over);
-  return (of_steps + query().strays * link.stray + ofBase(link)) * (1 + 8 * kUlp);
+  return (of_steps + query().strays * link.stray + ofBase(link)) * (1 + 32 * kUlp);
 }
 
 }  // namespace FCL_ARTIC_ISA
