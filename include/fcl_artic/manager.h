@@ -208,15 +208,17 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// that slide by `all.length` m. Joints with a tolerance of their own keep it; joints that mimic others follow them.
   /// Needs setup().
   ///
-  /// If a joint, the base or an object has a tolerance, `free` holds for every path within them all (doc/PROMISE.md,
-  /// "Tolerances"), in all queries of this manager, and clearance() is that of all of these paths. If there is a
-  /// contact, CertifiedContact::q_witness shows it. Certificates and Method::redon2004 do not know tolerances: they
-  /// throw std::invalid_argument.
+  /// Where a joint, the base or an object has a tolerance, `free` holds for every path within all tolerances
+  /// (doc/PROMISE.md, "Tolerances"). So do all other answers of this manager, clearance() too.
+  /// CertifiedContact::q_witness shows a contact within them. Certificates and Method::redon2004 do not know
+  /// tolerances: they throw std::invalid_argument.
   /// @throws std::invalid_argument: a number that is negative or not finite.
   void setJointTolerances(const JointTolerance& all);
   /// Sets the tolerance of one joint, in place of that of all joints. Needs setup().
-  /// @throws std::invalid_argument: no such joint; one that is fixed or mimics another; a length for a joint that does
-  ///   not slide or an angle for one that does not turn; a number that is negative or not finite.
+  /// @throws std::invalid_argument for
+  ///   - an unknown joint, one that is fixed, one that mimics another,
+  ///   - a length for a joint that does not slide, an angle for one that does not turn,
+  ///   - a number that is negative or not finite.
   void setJointTolerance(const std::string& joint, const JointTolerance& tolerance);
   /// Sets how far the robot's base may be from the world's origin, where its roots stand: what calibration leaves. The
   /// pivot is a point of the world. Links are off against obstacles, not against each other. Needs setup().

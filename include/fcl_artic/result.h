@@ -88,9 +88,9 @@ struct CertifiedContact {
   /// Whether contact of these two pieces at or before t_upper is proven. If not, it can't be excluded within the
   /// tolerances.
   bool certain = false;
-  /// For a manager with tolerances of joints or poses: a configuration within them, at t_upper, at which contact of the
-  /// two bodies is proven; the motion's own if they touch there. Empty if the contact is not certain, and without
-  /// tolerances.
+  /// With tolerances (ArticulatedCollisionManager::setJointTolerances()), a configuration within them at t_upper. There
+  /// contact of the two bodies is proven. It is the motion's own if they touch at that. It is empty if the contact is
+  /// not certain, and without tolerances.
   Eigen::VectorXd q_witness;
 
   /// Returns this contact as FCL's own type. At first contact nothing has been penetrated: the depth is 0.

@@ -11,15 +11,14 @@ namespace fcl_artic {
 /// How far a joint may be from the value that the motion gives it, at each time. Both numbers are finite and at
 /// least 0.
 struct JointTolerance {
-  /// rad: of a joint that turns. Of a spherical joint and of the turn of a floating one it is the angle of the rotation
-  /// from the nominal to the real orientation.
+  /// rad: the angle of a joint that turns. A spherical or floating joint may be turned by it about any axis.
   double angle = 0;
-  /// m: of a joint that slides. Of planar and floating joints it is the distance of the real from the nominal origin.
+  /// m: the length of a joint that slides. The origin of a planar or floating joint may be off by it in any direction.
   double length = 0;
 };
 
-/// How far an object may be from the pose that it is said to have: turned by at most `angle` about a fixed point, in
-/// any direction, and then moved by at most `length`. The numbers are finite, the first two at least 0.
+/// How far an object may be from the pose that it is said to have. It may be turned by at most `angle` about a fixed
+/// point, around any axis, and then moved by at most `length`. The numbers are finite, the first two at least 0.
 struct PoseTolerance {
   double length = 0;                                ///< m
   double angle = 0;                                 ///< rad

@@ -71,7 +71,7 @@ BodyRef bodyOfState(const py::tuple& s) {
 py::tuple state(const CertifiedContact& c) {
   return py::make_tuple(state(c.body1), state(c.body2), c.b1, c.b2, memberOf(c.feature), array3(c.point),
                         array3(c.normal), array3(c.nearest1), array3(c.nearest2), c.approach_speed, c.t_lower,
-                        c.t_upper, c.certain);
+                        c.t_upper, c.certain, arrayOf(c.q_witness));
 }
 
 Vector3d plainVector(const py::object& value) {
@@ -93,6 +93,7 @@ CertifiedContact contactOfState(const py::tuple& s) {
   c.t_lower = py::cast<double>(s[10]);
   c.t_upper = py::cast<double>(s[11]);
   c.certain = py::cast<bool>(s[12]);
+  c.q_witness = vectorOf(s[13], "q_witness");
   return c;
 }
 
@@ -309,6 +310,11 @@ void bindResults(py::module_& module) {
       .def_readonly("t_lower", &CertifiedContact::t_lower)
       .def_readonly("t_upper", &CertifiedContact::t_upper)
       .def_readonly("certain", &CertifiedContact::certain)
+      .def_property_readonly("q_witness",
+                             [](const CertifiedContact& c) {
+                               return c.q_witness.size() > 0 ? py::object(arrayOf(c.q_witness))
+                                                             : py::object(py::none());
+                             })
       .def("__repr__", [](const CertifiedContact& c) { return "<Contact: " + printed(c) + ">"; })
       .def(py::pickle([](const CertifiedContact& c) { return state(c); }, &contactOfState));
 

@@ -524,6 +524,49 @@ void bindChanges(py::class_<World>& world) {
           [](World& w) { w.manager().change([](ArticulatedCollisionManager& m) { m.resetMargins(); }); },
           "Forgets all margins of bodies and pairs.")
       .def(
+          "set_joint_tolerance",
+          [](World& w, double angle, double length, const std::optional<std::string>& joint) {
+            const JointTolerance tolerance{angle, length};
+            w.manager().change([&](ArticulatedCollisionManager& m) {
+              joint ? m.setJointTolerance(*joint, tolerance) : m.setJointTolerances(tolerance);
+            });
+          },
+          "Sets how far all joints, or one, may be from what a motion says: those that turn by `angle` (rad), those "
+          "that "
+          "slide by `length` (m). Free holds for every path within the tolerances.",
+          py::arg("angle") = 0.0, py::arg("length") = 0.0, py::kw_only(), py::arg("joint") = py::none())
+      .def(
+          "set_base_tolerance",
+          [](World& w, double length, double angle, py::handle pivot) {
+            const PoseTolerance tolerance{length, angle, vectorOf(pivot, "pivot").head<3>()};
+            w.manager().change([&](ArticulatedCollisionManager& m) { m.setBaseTolerance(tolerance); });
+          },
+          "Sets how far the robot's base may be from its place: turned by at most `angle` (rad) about a point of the "
+          "world, then moved by at most `length` (m).",
+          py::arg("length") = 0.0, py::arg("angle") = 0.0, py::kw_only(), py::arg("pivot") = py::make_tuple(0, 0, 0))
+      .def(
+          "set_object_tolerance",
+          [](World& w, const std::string& name, double length, double angle, py::handle pivot) {
+            const PoseTolerance tolerance{length, angle, vectorOf(pivot, "pivot").head<3>()};
+            const std::vector<std::string> names = w.namesOf(name);
+            w.manager().change([&](ArticulatedCollisionManager& m) {
+              for (const std::string& one : names) m.setObjectTolerance(one, tolerance);
+            });
+          },
+          "Sets how far an obstacle or attached object may be from its pose: turned by at most `angle` (rad) about a "
+          "point of its own frame, then moved by at most `length` (m).",
+          py::arg("name"), py::arg("length") = 0.0, py::arg("angle") = 0.0, py::kw_only(),
+          py::arg("pivot") = py::make_tuple(0, 0, 0))
+      .def(
+          "reset_tolerances",
+          [](World& w) { w.manager().change([](ArticulatedCollisionManager& m) { m.resetTolerances(); }); },
+          "Forgets the tolerances of joints, base and objects.")
+      .def_property_readonly(
+          "tolerances",
+          [](const World& w) {
+            return w.manager().look([](const ArticulatedCollisionManager& m) { return m.describeTolerances(); });
+          })
+      .def(
           "set_proofs",
           [](World& w, const Proofs* proofs) {
             const auto use = proofs ? proofs->proofs : nullptr;

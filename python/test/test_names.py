@@ -35,6 +35,8 @@ REACHABLE = {
     "Tolerances": "Request.tolerance_time",
     "Effort": "Request.work_budget",
     "Scope": "Request.check_self",
+    "JointTolerance": "World.set_joint_tolerance",
+    "PoseTolerance": "World.set_object_tolerance",
     "CertifiedPairRequest": "Request",
     "CertifiedRequest": "Request",
     "Status": "Status",

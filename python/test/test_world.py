@@ -618,3 +618,24 @@ def test_objects_are_kept_alive_as_long_as_they_are_used(data, miss):
     del world
     gc.collect()
     assert result.free and tree.dof == 6 and motion.configuration(1).shape == (6,)
+
+
+def test_tolerances(robot):
+    world = fcl_artic.World(robot)
+    world.add("ball", fcl_artic.sphere(0.1), pose=[2.5, 0, 0])
+    q = np.zeros(6)
+    assert world.tolerances == "" and world.check(q, q).free
+    world.set_joint_tolerance(angle=0.01)
+    world.set_base_tolerance(0.002)
+    world.set_object_tolerance("ball", length=0.001, angle=0.02, pivot=[0, 0, 0.1])
+    assert "joints" in world.tolerances and "base 2 mm" in world.tolerances and "'ball' 1 mm" in world.tolerances
+    assert world.check(q, q).free
+    world.set_object_tolerance("ball", length=3)
+    hit = world.check(q, q)
+    assert hit.contact and not hit.certain and hit.contacts[0].q_witness is None
+    with pytest.raises(ValueError):
+        world.set_joint_tolerance(angle=-1)
+    with pytest.raises(ValueError, match="jiont"):
+        world.set_joint_tolerance(angle=0.1, joint="jiont")
+    world.reset_tolerances()
+    assert world.tolerances == "" and world.check(q, q).free

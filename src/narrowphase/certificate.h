@@ -65,32 +65,6 @@ FCL_ARTIC_INLINE double slackWithoutTube(const Side& side, const Piece& still, c
   return side.own_margin + still.radius + moving.radius + side.m.rem_c + side.m.rem_R * moving.reach + side.pad;
 }
 
-/// Lanes in which a range of the moving core is farther from one of the still core than slackOf(), or than the slack
-/// that the tube leaves along n.
-/// @param n  in the frame of side.still.
-FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& still, const Piece& moving, const Vec3& n,
-                                             const Lanes& least, const Lanes& most, unsigned lanes) {
-  double s_lower, s_upper;
-  coreRange(*side.still, still, n, s_lower, s_upper);
-  const double slack = slackOf(side, still, moving);
-  const unsigned apart = greater(least, Lanes(s_upper + slack)) | greater(Lanes(s_lower - slack), most);
-  if (!side.tube || !(lanes & ~apart)) return apart;
-  const Lanes along = tubeAlong(side, still, moving, spread(n), Lanes(1 + 8 * kUlp), lanes & ~apart) +
-                      Lanes(slackWithoutTube(side, still, moving));
-  return apart | greater(least, Lanes(s_upper) + along) | greater(Lanes(s_lower) - along, most);
-}
-
-/// Lanes, of those that matter, in which n or -n (unit to 1e-15) certainly keeps the pieces more than the margin apart
-/// over the whole interval.
-/// @param n  in the frame of side.still.
-FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& still, const Piece& moving, const Vec3& n,
-                                             unsigned lanes) {
-  Lanes lower[3], upper[3];
-  movingRange(side, moving, n, lanes, lower, upper);
-  const Lanes least = min(min(lower[0], lower[1]), lower[2]), most = max(max(upper[0], upper[1]), upper[2]);
-  return certainlySeparated(side, still, moving, n, least, most, lanes);
-}
-
 /// The range of n.x over the moving piece's core in each lane, for a direction n that is fixed in the frame of
 /// side.still. The same range serves every still piece that it is compared with.
 struct SweptRange {
@@ -107,10 +81,29 @@ FCL_ARTIC_INLINE void sweepRange(const Side& side, const Piece& moving, const Ve
   range.least = min(min(lower[0], lower[1]), lower[2]);
   range.most = max(max(upper[0], upper[1]), upper[2]);
 }
-/// certainlySeparated() along range.n, of the piece whose range it is.
+/// Lanes, of those that are known, in which range.n or -range.n certainly keeps the pieces more than the margin apart
+/// over the whole interval. The gap is compared with slackOf(), then with the slack that the tube leaves along n.
 FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& still, const Piece& moving,
                                              const SweptRange& range) {
-  return range.lanes & certainlySeparated(side, still, moving, range.n, range.least, range.most, range.lanes);
+  double s_lower, s_upper;
+  coreRange(*side.still, still, range.n, s_lower, s_upper);
+  const double slack = slackOf(side, still, moving);
+  unsigned apart = greater(range.least, Lanes(s_upper + slack)) | greater(Lanes(s_lower - slack), range.most);
+  if (side.tube && (range.lanes & ~apart)) {
+    const Lanes along = tubeAlong(side, still, moving, spread(range.n), Lanes(1 + 8 * kUlp), range.lanes & ~apart) +
+                        Lanes(slackWithoutTube(side, still, moving));
+    apart |= greater(range.least, Lanes(s_upper) + along) | greater(Lanes(s_lower) - along, range.most);
+  }
+  return range.lanes & apart;
+}
+/// Lanes, of those that matter, in which n or -n (unit to 1e-15) certainly keeps the pieces more than the margin apart
+/// over the whole interval.
+/// @param n  in the frame of side.still.
+FCL_ARTIC_INLINE unsigned certainlySeparated(const Side& side, const Piece& still, const Piece& moving, const Vec3& n,
+                                             unsigned lanes) {
+  SweptRange range;
+  sweepRange(side, moving, n, lanes, range);
+  return certainlySeparated(side, still, moving, range);
 }
 
 /// A part [0, z] of [0, 1] on which the quadratic with Bernstein coefficients G is certainly positive; up to its first

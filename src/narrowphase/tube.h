@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The tube around a motion, as one pair sees it over eight intervals: by how much its bodies may be nearer to each
-// other where joints, poses and the base are off by their tolerances (doc/NUMERICS.md, "Tubes").
+// The tube around a motion, as one pair sees it over eight intervals (doc/NUMERICS.md, "Tubes"). Joints, poses and the
+// base may be off by their tolerances. So the pair's bodies may be nearer to each other than the motion says.
 #pragma once
 
 #include "convex/piece_kinds.h"
@@ -21,8 +21,8 @@ struct TubeAxis {
 struct Tube {
   Lanes middle{0.0};  ///< in any direction, in the middle of each lane
   double over = 0;    ///< the same over the whole batch
-  /// The steps whose share depends on the direction, and what all others and all that is no first order add to it:
-  /// where points of A are looked at [0], and of B [1].
+  /// The steps whose share depends on the direction. `rest` is what all others and second order add to it. Entry [0]
+  /// counts if points of A are looked at, [1] if points of B are.
   const TubeAxis* axes = nullptr;
   int count = 0;
   double rest_middle[2] = {kUnknown, kUnknown}, rest[2] = {kUnknown, kUnknown};

@@ -47,22 +47,22 @@ void Setup::listMovers() {
 
 void Setup::setStrays(const Registry& registry) {
   const NamedTolerances& tolerances = registry.tolerances();
-  strays_ = tolerances.straysOf(*registry.tree());
-  for (FrameSweep& sweep : sweeps_) sweep.setStrays(strays_.of_joint);
+  strays_.of_robot = tolerances.straysOf(*registry.tree());
+  for (FrameSweep& sweep : sweeps_) sweep.setStrays(strays_.of_robot.of_joint);
   const PoseTolerance& base = tolerances.base();
-  base_stray_ = {base.length, base.angle, {base.pivot[0], base.pivot[1], base.pivot[2]}};
-  largest_stray_ = 0;
+  strays_.base = {base.length, base.angle, {base.pivot[0], base.pivot[1], base.pivot[2]}};
+  strays_.largest = 0;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const ManagedBody& body = registry.body(static_cast<std::int32_t>(i));
     bodies_[i].stray = body.empty() ? 0 : tolerances.strayOf(body.name, *body.shape);
-    largest_stray_ = std::max(largest_stray_, bodies_[i].stray);
+    strays_.largest = std::max(strays_.largest, bodies_[i].stray);
   }
-  any_stray_ = tolerances.any();
-  for (engine::LinkPair& pair : link_pairs_) pair.stray = any_stray_ ? strayOf(pair) : 0;
+  strays_.any = tolerances.any();
+  for (engine::LinkPair& pair : link_pairs_) pair.stray = strays_.any ? strayOf(pair) : 0;
 }
 
-/// Upper bound of how much nearer the strays of all steps between two bodies bring them (doc/NUMERICS.md, "Tubes"), by
-/// the largest distances from the steps' axes that the lengths between them allow.
+/// Upper bound of how much nearer two bodies may be by the strays of all steps between them (doc/NUMERICS.md, "Tubes").
+/// A point is no farther from an axis than the lengths between them allow.
 double Setup::strayOf(const engine::LinkPair& pair) const {
   const engine::SweepView sweep = sweeps_[static_cast<std::size_t>(pair.sweep)].view();
   const engine::Body &a = bodies_[static_cast<std::size_t>(pair.a)], &b = bodies_[static_cast<std::size_t>(pair.b)];
@@ -127,9 +127,9 @@ engine::Problem Setup::problem() const {
   p.num_obstacles = static_cast<std::int32_t>(still_.bodies.size());
   p.obstacle_tree = still_.tree.empty() ? nullptr : still_.tree.data();
   p.still_bounds = still_.bounds.data();
-  p.strays = any_stray_;
-  p.base = base_stray_;
-  p.largest_stray = largest_stray_;
+  p.strays = strays_.any;
+  p.base = strays_.base;
+  p.largest_stray = strays_.largest;
   p.contained = solids_ ? &findContained : nullptr;
   return p;
 }

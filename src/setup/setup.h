@@ -61,10 +61,11 @@ class Setup {
   /// How far variables stray, for those who look at ranges of them.
   /// @param times  engine::Query::strays
   VariableStrays variableStrays(double times) const {
-    return {strays_.of_variable.empty() ? nullptr : strays_.of_variable.data(), times};
+    const std::vector<double>& of = strays_.of_robot.of_variable;
+    return {of.empty() ? nullptr : of.data(), times};
   }
   /// Whether the robot or an obstacle strays.
-  bool strays() const { return any_stray_; }
+  bool strays() const { return strays_.any; }
   const LinkTables& tables() const { return *tables_; }
   const ProvenPairs& proven() const { return proven_; }
   /// Variables of the moving obstacles' motions, column k for t^k. A query's own come before them.
@@ -105,10 +106,13 @@ class Setup {
   StillObstacles still_;
   std::vector<engine::BoundedSource> sources_;  ///< of moving obstacles' bounded motions
   Eigen::MatrixXd moving_coefficients_;
-  TreeStrays strays_;
-  engine::BaseStray base_stray_;
-  double largest_stray_ = 0;  ///< of a body
-  bool any_stray_ = false;
+  struct Strays {
+    TreeStrays of_robot;
+    engine::BaseStray base;
+    double largest = 0;  ///< of a body
+    bool any = false;
+  };
+  Strays strays_;
   PairMargins margins_, margins_of_neighbours_;
   ProvenPairs proven_;
   std::shared_ptr<const LinkTables> tables_ =

@@ -162,15 +162,14 @@ double NamedTolerances::strayOf(const std::string& object, const ShapeTree& shap
   const auto found = of_object_.find(object);
   if (found == of_object_.end()) return 0;
   const auto& [length, angle, pivot] = found->second;
-  // The root's box holds the geometry. The chord of an angle is no longer than the angle, and no longer than 2: but a
-  // query may take a part of a large angle (engine::Query::strays), so the 2 does not count here.
+  // The root's box holds the geometry. The chord of an angle is no longer than the angle. It is no longer than 2
+  // either, but that does not count here: a query may take a part of a large angle (engine::Query::strays).
   const engine::Node& root = shape.view().nodes[0];
-  double square = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double far = std::max(std::abs(root.lo[k] - pivot[k]), std::abs(root.hi[k] - pivot[k]));
-    square += far * far;
-  }
-  return (length + (angle > 0 ? angle * std::sqrt(square) : 0)) * (1 + 8 * kUlp);
+  const auto corner = [&](const float* ends) -> Eigen::Array3d {
+    return (Eigen::Vector3f::Map(ends).cast<double>() - pivot).array().abs();
+  };
+  const double farthest = corner(root.lo).max(corner(root.hi)).matrix().norm();
+  return (length + (angle > 0 ? angle * farthest : 0)) * (1 + 8 * kUlp);
 }
 
 }  // namespace fcl_artic

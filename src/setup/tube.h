@@ -25,12 +25,10 @@ struct TreeStrays {
 /// Tolerances by the names of joints and of objects.
 class NamedTolerances {
  public:
-  /// Of all joints that have none of their own: turning ones by the angle, sliding ones by the length.
+  /// Counts for joints that have none of their own: the angle if they turn, the length if they slide.
   /// @throws std::invalid_argument: a number negative or not finite.
   void setAllJoints(const JointTolerance& tolerance);
-  /// @throws std::invalid_argument beginning with `what`: the tree has no such joint; a joint that is fixed or mimics
-  ///   another one; a length for a joint that only turns, an angle for one that only slides; a number negative or not
-  ///   finite.
+  /// @throws std::invalid_argument beginning with `what`, as ArticulatedCollisionManager::setJointTolerance().
   void setJoint(const KinematicTree& tree, const std::string& joint, const JointTolerance& tolerance,
                 const std::string& what);
   /// @throws std::invalid_argument: a number negative or not finite.

@@ -428,18 +428,6 @@ inline void StageOne::cull(Buffer<Entry>& open) {
   for (int i = 0; i < open.size(); i = endOfPair(open, i)) ++statistics().pairs_after_culling;
 }
 
-/// A line swept sphere over one lane: both ends' Bernstein points.
-inline void sweptOver(int lane, const PointLanes* ends, double radius, engine::SweptLink& part) {
-  for (int end = 0; end < 2; ++end) {
-    const PointLanes& p = ends[end];
-    const Vec3 c0 = laneOf(p.c[0], lane), c1 = laneOf(p.c[1], lane), c2 = laneOf(p.c[2], lane);
-    (c0 - c1 + c2).store(part.points[end]);
-    (c0 + c1 + c2).store(part.points[2 + end]);
-    (c0 - c2).store(part.points[4 + end]);
-  }
-  part.radius = radius * (1 + 4 * kUlp);
-}
-
 /// A line swept sphere that holds a link in all of the tube, in each lane of [0, 1].
 inline void StageOne::sweptInWorld(int mover, engine::SweptLink* parts) const {
   const SweptLss& s = mover_lss_[mover];

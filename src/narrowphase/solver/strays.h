@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The tube around a motion: upper bounds of how much nearer two bodies may be than the motion says, where joints, poses
-// and the base may be off by their tolerances (doc/NUMERICS.md, "Tubes").
+// The tube around a motion (doc/NUMERICS.md, "Tubes"). Joints, poses and the base may be off by their tolerances. Here
+// are upper bounds of how much nearer two bodies may be than the motion says.
 #pragma once
 
 #include "narrowphase/solver/swept_box.h"
@@ -17,19 +17,19 @@ class Strays : PartOfSolver {
 
   /// Whether anything strays in the query at hand.
   bool any() const { return problem().strays && query().strays > 0; }
-  /// Of a pair's two bodies against each other. It is valid until the next one.
+  /// Bounds what a pair's two bodies stray against each other. The tube is valid until the next one is asked for.
   void between(PairId pair, double pose_error, Tube& tube);
-  /// Before inWorld(), over the batch that is set.
+  /// To be called before inWorld(), when the batch is set.
   void begin();
-  /// Of a link against the world, over the batch.
+  /// Bounds what a link strays against the world, over the batch.
   double inWorld(const Body& link);
-  /// Of two links against each other.
-  /// @param in_world  of both against the world, summed.
+  /// Bounds what two links stray against each other, whatever the motion.
+  /// @param in_world  inWorld() of both, summed.
   double ofLinks(int link_pair, double in_world) const {
     if (!any()) return 0;
     return min(max(query().strays, 1.0) * problem().link_pairs[link_pair].stray, in_world);
   }
-  /// Of an obstacle's own pose.
+  /// How far an obstacle's own pose strays.
   double ofObstacle(int body_number) const { return any() ? query().strays * body(body_number).stray : 0; }
   /// No obstacle's is larger.
   double largest() const { return any() ? query().strays * problem().largest_stray : 0; }
@@ -41,7 +41,8 @@ class Strays : PartOfSolver {
     double radius;
     double reach;  ///< the larger distance of an end from the frame's origin
   };
-  static Outline outlineOf(const Body& body, const Placement& placement);
+  static Outline outlineOf(const Body& body, const Mat3& R, const Vec3& t);
+  static Outline outlineOf(const Body& body, const Placement& P) { return outlineOf(body, Mat3(P.R), Vec3(P.t)); }
   /// Upper bounds of a body's largest distance from a step's axis or centre.
   struct Distance {
     Lanes middle, over;
@@ -51,7 +52,7 @@ class Strays : PartOfSolver {
   };
   Distance distance(const engine::SweepStep& step, const FrameLanes& frame, const EndsInBase& ends, double radius,
                     double speed, double error) const;
-  /// What a step's tolerance counts by: times a distance if it turns, else m.
+  /// How far a step moves a point: if it turns, times the point's distance from its axis; else m.
   double strayOf(const engine::SweepStep& step) const;
   struct Chain {
     int sweep, step_b;
@@ -70,7 +71,7 @@ class Strays : PartOfSolver {
   struct Form {
     bool made = false;
     int count = 0;      ///< of steps
-    Vec3Lanes q[3], b;  ///< of |x - o|^2 across the axes, times what the steps stray: of q the upper half
+    Vec3Lanes q[3], b;  ///< of |x - o|^2 across the axes, times what the steps stray
     Lanes c;
     double strays = 0, slides = 0;  ///< of turns; of slides, m
     double rates = 0, lengths = 0, levers = 0, slide_rates = 0;
@@ -95,10 +96,8 @@ inline double Strays::strayOf(const engine::SweepStep& step) const {
   return turns(step) ? min(stray, 2.0) : stray;
 }
 
-/// @param placement  of the body's tree in the frame that the outline is wanted in.
-inline Strays::Outline Strays::outlineOf(const Body& body, const Placement& placement) {
-  const Mat3 R(placement.R);
-  const Vec3 t(placement.t);
+/// @param R, t  of the body's tree in the frame that the outline is wanted in.
+inline Strays::Outline Strays::outlineOf(const Body& body, const Mat3& R, const Vec3& t) {
   Outline outline;
   if (body.tree_lss) {
     for (int i = 0; i < 2; ++i) outline.end[i] = Vec3(body.tree_lss + 3 * i);
@@ -136,9 +135,9 @@ inline Strays::Distance Strays::distance(const engine::SweepStep& step, const Fr
 }
 
 /// Fix a frame between two steps of the chain. The steps on B's side of it move B as seen from there, and those on A's
-/// side move A. Each step moves its body by no more than its chord times the body's distance from its axis, as the
-/// motion has both: the steps are changed one after the other, those next to the frame first, so the ones farther out
-/// are still where the motion has them. The least sum over all such frames counts, in each lane.
+/// side move A. No step moves its body by more than its chord times the body's distance from its axis. That distance is
+/// the one that the motion has: the steps next to the frame are changed first, while those farther out are still where
+/// the motion has them. The least sum over all such frames counts, in each lane.
 inline Strays::Sums Strays::ofSteps(const Chain& chain) {
   const engine::SweepView& view = problem().sweeps[chain.sweep];
   const Outline& b = chain.b;
@@ -197,9 +196,10 @@ inline Strays::Sums Strays::ofSteps(const Chain& chain) {
   return least;
 }
 
-/// The shares of the chain's steps by direction (after ofSteps()). A turn by at most d about u moves a point, at r from
-/// the axis, along a unit n by at most d |n.(u x r)| + (d^2 / 2) |r|; and as steps before it have turned by at most D
-/// in all, by D d |r| more. So what is no first order is less than the sum of all angles times the sum of all d |r|.
+/// The shares of the chain's steps by direction (after ofSteps()). A turn by at most d about u moves a point at r from
+/// the axis along a unit n by at most d |n.(u x r)| + (d^2 / 2) |r|. If other steps have turned its frame by at most D
+/// in all, D d |r| is added. So all that is no first order is less than the sum of all angles times the sum of all d
+/// |r|.
 /// @param constant  of all that has no direction.
 inline void Strays::direct(const Chain& chain, const Placement& inverse_a, double constant, Tube& tube) {
   axes_.clear();
@@ -241,7 +241,7 @@ inline void Strays::direct(const Chain& chain, const Placement& inverse_a, doubl
   tube.count = axes_.size();
 }
 
-/// Of the robot's base: against the world all of the robot moves with it.
+/// How far the robot's base strays: against the world all of the robot moves with it.
 inline double Strays::ofBase(const Body& link) {
   const engine::BaseStray& base = problem().base;
   if (!base.any()) return 0;
@@ -279,10 +279,7 @@ inline void Strays::between(PairId pair, double pose_error, Tube& tube) {
   // A in the base frame.
   const Mat3 R = transposed(Mat3(parts.inverse_a->R));
   const Vec3 t = -(R * Vec3(parts.inverse_a->t));
-  Placement placement_a = *parts.inverse_a;
-  for (int i = 0; i < 3; ++i) R[i].store(placement_a.R + 3 * i);
-  t.store(placement_a.t);
-  const Outline a = outlineOf(A, placement_a), b = outlineOf(B, *parts.placement_b);
+  const Outline a = outlineOf(A, R, t), b = outlineOf(B, *parts.placement_b);
   // An obstacle that is larger than the link is not worth the work: nearly always the steps move the link by less.
   const bool both = !problem().isScenePair(pair) || a.radius < b.radius;
   const Chain chain = {parts.sweep, parts.step_b, both ? &a : nullptr, b, pose_error};
@@ -327,13 +324,10 @@ inline const Strays::Form& Strays::formOf(int step) {
     // |x - o|^2 less the part along the axis.
     const Vec3Lanes across = frame.o - z * dot(z, frame.o);
     for (int i = 0; i < 3; ++i) {
-      for (int j = i; j < 3; ++j) {
-        Lanes entry = z[i] * z[j] * Lanes(-s);
-        if (i == j) entry = entry + Lanes(s);
-        form.q[i][j] = form.q[i][j] + entry;
-      }
-      form.b[i] = mulAdd(across[i], Lanes(s), form.b[i]);
+      const Vec3Lanes unit = spread(Vec3(i == 0, i == 1, i == 2));
+      form.q[i] = mulAdd(unit - z * z[i], Lanes(s), form.q[i]);
     }
+    form.b = mulAdd(across, Lanes(s), form.b);
     form.c = mulAdd(dot(across, frame.o), Lanes(s), form.c);
     form.strays += s;
     form.rates += s * bounds.rates.a;
@@ -358,9 +352,8 @@ inline double Strays::inWorld(const Body& link) {
     Lanes square(0.0);
     for (const Vec3& end : outline.end) {
       const Vec3Lanes x = frame.o + frame.R * end;
-      const Lanes diagonal = x[0] * x[0] * form.q[0][0] + x[1] * x[1] * form.q[1][1] + x[2] * x[2] * form.q[2][2];
-      const Lanes mixed = x[0] * x[1] * form.q[0][1] + x[0] * x[2] * form.q[0][2] + x[1] * x[2] * form.q[1][2];
-      square = max(square, diagonal + (mixed - dot(x, form.b)) * Lanes(2.0) + form.c);
+      const Vec3Lanes qx(dot(form.q[0], x), dot(form.q[1], x), dot(form.q[2], x));
+      square = max(square, dot(x, qx - form.b * Lanes(2.0)) + form.c);
     }
     const double lever = last.length + outline.reach, sizes = lever + outline.radius;
     // Rounding of the form: its terms are at most strays * sizes^2 each, made of frames of these errors.

@@ -5,6 +5,7 @@
 // is examined.
 #pragma once
 
+#include "model/advisor.h"
 #include "model/problem.h"
 #include "motion/rigid_lanes.h"
 #include "narrowphase/solver/swept_box.h"
@@ -77,6 +78,18 @@ FCL_ARTIC_INLINE void boundLss(const SweptLss& s, double margin, SweptBox& box) 
     box.lo[k] = narrowDown(lo[k]);
     box.hi[k] = narrowUp(hi[k]);
   }
+}
+
+/// A line swept sphere over one lane: both ends' Bernstein points.
+inline void sweptOver(int lane, const PointLanes* ends, double radius, engine::SweptLink& part) {
+  for (int end = 0; end < 2; ++end) {
+    const PointLanes& p = ends[end];
+    const Vec3 c0 = laneOf(p.c[0], lane), c1 = laneOf(p.c[1], lane), c2 = laneOf(p.c[2], lane);
+    (c0 - c1 + c2).store(part.points[end]);
+    (c0 + c1 + c2).store(part.points[2 + end]);
+    (c0 - c2).store(part.points[4 + end]);
+  }
+  part.radius = radius * (1 + 4 * kUlp);
 }
 
 /// Least of the Bernstein points of g0 + tau g1 + tau^2 g2.
