@@ -23,9 +23,12 @@ Qed.
 
     A convex piece as its corners and a radius. A corner is an ellipsoid around a point, with the semi-axes along those
     of the geometry: a disc, or most often the point itself. Its numbers are constant models. The outline covers a point
-    if along every direction the point is no farther than some corner and the radius. *)
+    if along every direction the point is no farther than some corner and the radius. A halfspace is a wall; a plane is
+    one with [both] sides. *)
 Record round := Round { centre : tvec; semiaxes : option tvec }.
-Record outline := Outline { corners : list round; radius : Z }.
+Inductive outline :=
+  | Outline (corners : list round) (radius : Z)
+  | Wall (normal : numbers3) (offset : number) (both : bool).
 
 Definition times (a v : vec) : vec := Vec (vx a * vx v) (vy a * vy v) (vz a * vz v).
 
@@ -33,8 +36,12 @@ Definition holds_round (c : round) (s : R) (p a : vec) : Prop :=
   holdsv (centre c) s p /\ match semiaxes c with Some m => holdsv m s a | None => a = Vec 0 0 0 end.
 
 Definition covers (s : R) (o : outline) (x : vec) : Prop :=
-  forall v, exists c p a, In c (corners o) /\ holds_round c s p a /\
-    dot v x <= dot v p + norm (times a v) + V (radius o) * norm v.
+  match o with
+  | Outline corners radius =>
+      forall v, exists c p a, In c corners /\ holds_round c s p a /\
+        dot v x <= dot v p + norm (times a v) + V radius * norm v
+  | Wall n d both => dot (point n) x <= real d /\ (both = true -> dot (point n) x = real d)
+  end.
 
 Definition at_point (p : tvec) : round := Round p None.
 
@@ -69,6 +76,8 @@ Definition outlines (g : geometry) : list outline :=
   | Cylinder r l => [Outline [disc (upper_end l) r; disc (lower_end l) r] 0]
   | Cone r l => [Outline [at_point (upper_end l); disc (lower_end l) r] 0]
   | Hull ps => [of_points (map tm_point ps)]
+  | Halfspace n d => [Wall n d false]
+  | Plane n d => [Wall n d true]
   end.
 
 Lemma real_half x : real (half x) = real x / 2.
@@ -94,7 +103,7 @@ Qed.
 Lemma points_cover s ms x :
   (forall v, exists m p, In m ms /\ holdsv m s p /\ dot v x <= dot v p) -> covers s (of_points ms) x.
 Proof.
-  intros H v. destruct (H v) as (m & p & I & Hm & L). exists (at_point m), p, (Vec 0 0 0). cbn [corners radius of_points].
+  intros H v. destruct (H v) as (m & p & I & Hm & L). exists (at_point m), p, (Vec 0 0 0).
   split; [apply in_map; exact I|]. split; [apply at_point_holds; exact Hm|]. rewrite norm_nil, V_0. lra.
 Qed.
 
@@ -136,7 +145,7 @@ Qed.
 Lemma ball_covers s cs r rr x c : (forall v, exists m p, In m cs /\ holdsv m s p /\ dot v c <= dot v p) ->
   norm (sub x c) <= rr -> rr <= V r -> covers s (Outline (map at_point cs) r) x.
 Proof.
-  intros H N R v. destruct (H v) as (m & p & Im & Hm & L). exists (at_point m), p, (Vec 0 0 0). cbn [corners radius].
+  intros H N R v. destruct (H v) as (m & p & Im & Hm & L). exists (at_point m), p, (Vec 0 0 0).
   split; [apply in_map; exact Im|]. split; [apply at_point_holds; exact Hm|]. rewrite norm_nil.
   assert (E : dot v x = dot v c + dot v (sub x c)) by (unfold dot, sub, add, scale; cbn; ring).
   pose proof (cauchy v (sub x c)). pose proof (norm_nonneg v).
@@ -172,7 +181,7 @@ Proof. intros H. split; [exact H|]. repeat split; try apply holds_number. apply 
 
 Theorem outlines_cover g x : inside g x -> exists o, In o (outlines g) /\ forall s, covers s o x.
 Proof.
-  destruct g as [ts | cells | sizes | r | r l | a | r l | r l | ps]; cbn [inside outlines].
+  destruct g as [ts | cells | sizes | r | r l | a | r l | r l | ps | n d | n d]; cbn [inside outlines].
   - intros (a & b & c & I & H). exists (of_points [tm_point a; tm_point b; tm_point c]).
     split; [apply in_map_iff; exists (a, b, c); split; [reflexivity | exact I]|]. intros s.
     eapply hull_covers; [|exact H]. repeat (apply Forall2_cons; [apply holdsv_point|]). apply Forall2_nil.
@@ -198,7 +207,7 @@ Proof.
     + exists (lower_end l), (Vec 0 0 (- (real l / 2))). split; [right; left; reflexivity|]. split; [exact L|].
       unfold dot; cbn [vx vy vz]. nra.
   - intros (u & Nu & ->). eexists. split; [left; reflexivity|]. intros s v.
-    exists (Round origin_tm (Some (tm_point a))), (Vec 0 0 0), (point a). cbn [corners radius].
+    exists (Round origin_tm (Some (tm_point a))), (Vec 0 0 0), (point a).
     split; [left; reflexivity|]. split; [split; [apply origin_holds | apply holdsv_point]|]. rewrite V_0.
     pose proof (cauchy (times (point a) v) u) as C. pose proof (norm_nonneg (times (point a) v)).
     assert (norm (times (point a) v) * norm u <= norm (times (point a) v) * 1) by (apply Rmult_le_compat_l; assumption).
@@ -206,14 +215,14 @@ Proof.
     replace (dot v (Vec 0 0 0)) with 0 by (unfold dot; cbn; ring). lra.
   - intros (N & Hz). eexists. split; [left; reflexivity|]. intros s v. destruct (ends_hold s l) as [U L].
     assert (R : 0 <= real r) by (pose proof (norm_nonneg (Vec (vx x) (vy x) 0)); lra).
-    pose proof (in_disc v x (real r) N R) as D. cbn [corners radius]. rewrite V_0.
+    pose proof (in_disc v x (real r) N R) as D. rewrite V_0.
     destruct (Rle_lt_dec 0 (vz v)) as [P|G].
     + exists (disc (upper_end l) r), (Vec 0 0 (real l / 2)), (Vec (real r) (real r) 0).
       split; [left; reflexivity|]. split; [apply disc_holds; exact U|]. unfold dot; cbn [vx vy vz]. nra.
     + exists (disc (lower_end l) r), (Vec 0 0 (- (real l / 2))), (Vec (real r) (real r) 0).
       split; [right; left; reflexivity|]. split; [apply disc_holds; exact L|]. unfold dot; cbn [vx vy vz]. nra.
   - intros (h & Hh & N & Hz). eexists. split; [left; reflexivity|]. intros s v. destruct (ends_hold s l) as [U L].
-    cbn [corners radius]. rewrite V_0.
+    rewrite V_0.
     assert (D : vx v * vx x + vy v * vy x <= (1 - h) * norm (times (Vec (real r) (real r) 0) v)).
     { pose proof (norm_nonneg (Vec (vx x) (vy x) 0)).
       pose proof (in_disc v x ((1 - h) * real r) N ltac:(lra)) as D.
@@ -235,12 +244,15 @@ Proof.
       unfold dot at 2; cbn [vx vy vz]. nra.
   - intros H. eexists. split; [left; reflexivity|]. intros s. apply hull_covers with (ps := map point ps); [|exact H].
     clear H. induction ps as [|p ps IH]; cbn; constructor; [apply holdsv_point | exact IH].
+  - intros H. eexists. split; [left; reflexivity|]. intros s. split; [exact H | discriminate].
+  - intros H. eexists. split; [left; reflexivity|]. intros s. split; [lra | intros _; exact H].
 Qed.
 
 (** ** How far pieces reach *)
 
+(** No bound of one of two is none of both. *)
 Definition upper_join (a b : option upper) : option upper :=
-  match a, b with Some u, Some w => Some (upper_max u w) | None, _ => b | _, None => a end.
+  match a, b with Some u, Some w => Some (upper_max u w) | _, _ => None end.
 
 (** Above the length of a vector of models. With l the linear part, the length |l(s)| is convex: not above the line
     between its values at s = -1 and s = 1. The rest adds its magnitude. *)
@@ -260,16 +272,28 @@ Definition corner_reach (f : func) (c : round) : upper :=
   match semiaxes c with None => u | Some a => upper_add u (chord (ttimes a (fv f))) end.
 
 Fixpoint farthest (f : func) (cs : list round) : option upper :=
-  match cs with [] => None | c :: rest => upper_join (Some (corner_reach f c)) (farthest f rest) end.
+  match cs with
+  | [] => None
+  | [c] => Some (corner_reach f c)
+  | c :: rest => upper_join (Some (corner_reach f c)) (farthest f rest)
+  end.
 
 (** [length]: at least that of the direction. *)
 Definition reach_one (f : func) (length : Z) (o : outline) : option upper :=
-  option_map (fun u => upper_add u (upper_const (mulup (Z.max 0 (radius o)) length))) (farthest f (corners o)).
+  match o with
+  | Outline corners radius =>
+      option_map (fun u => upper_add u (upper_const (mulup (Z.max 0 radius) length))) (farthest f corners)
+  | Wall _ _ _ => None
+  end.
 
 Fixpoint reach (f : func) (length : Z) (os : list outline) : option upper :=
-  match os with [] => None | o :: rest => upper_join (reach_one f length o) (reach f length rest) end.
+  match os with
+  | [] => None
+  | [o] => reach_one f length o
+  | o :: rest => upper_join (reach_one f length o) (reach f length rest)
+  end.
 
-Definition below_opt (u : option upper) (s y : R) : Prop := match u with Some w => below w s y | None => False end.
+Definition below_opt (u : option upper) (s y : R) : Prop := match u with Some w => below w s y | None => True end.
 
 Section AtOneTime.
 Variable s : R.
@@ -377,40 +401,48 @@ Proof.
     e1 * ((1 + s) * (1 + s) / 4) + V rest); [lra|]. apply Req_le. field.
 Qed.
 
+Lemma corner_ok f v d c p a : holdsf s f v d -> holds_round c s p a ->
+  below (corner_reach f c) s (dot v p + d + norm (times a v)).
+Proof.
+  intros [Hv Hd] [Hc Ha]. unfold corner_reach.
+  assert (C : below (upper_of (tm_add (tdot (centre c) (fv f)) (fd f))) s (dot v p + d)).
+  { apply below_of. apply holds_add; [|exact Hd].
+    eapply holds_eq; [|apply holds_dot; [exact Hs | exact Hc | exact Hv]]. unfold dot. ring. }
+  destruct (semiaxes c) as [am|].
+  - apply below_add; [exact C|]. apply chord_ok. destruct Ha as (A1 & A2 & A3), Hv as (V1 & V2 & V3).
+    repeat split; apply holds_mul; assumption.
+  - subst a. rewrite norm_nil, Rplus_0_r. exact C.
+Qed.
+
 Lemma farthest_ok f v d cs c p a : holdsf s f v d -> In c cs -> holds_round c s p a ->
   below_opt (farthest f cs) s (dot v p + d + norm (times a v)).
 Proof.
-  intros [Hv Hd] I [Hc Ha]. induction cs as [|c' cs IH]; [destruct I|]. cbn [farthest]. destruct I as [->|I].
-  - apply below_join_l. cbn [below_opt]. unfold corner_reach.
-    assert (C : below (upper_of (tm_add (tdot (centre c) (fv f)) (fd f))) s (dot v p + d)).
-    { apply below_of. apply holds_add; [|exact Hd].
-      eapply holds_eq; [|apply holds_dot; [exact Hs | exact Hc | exact Hv]]. unfold dot. ring. }
-    destruct (semiaxes c) as [am|].
-    + apply below_add; [exact C|]. apply chord_ok. destruct Ha as (A1 & A2 & A3), Hv as (V1 & V2 & V3).
-      repeat split; apply holds_mul; assumption.
-    + subst a. rewrite norm_nil, Rplus_0_r. exact C.
-  - apply below_join_r. apply IH. exact I.
+  intros Hf I Hc. pose proof (corner_ok f v d c p a Hf Hc) as K. induction cs as [|c' cs IH]; [destruct I|].
+  cbn [farthest]. destruct cs as [|c'' cs].
+  - destruct I as [->|[]]. exact K.
+  - destruct I as [->|I]; [apply below_join_l; exact K | apply below_join_r; apply IH; exact I].
 Qed.
 
 Lemma reach_one_ok f v d l o x : holdsf s f v d -> norm v <= V l -> covers s o x ->
   below_opt (reach_one f l o) s (dot v x + d).
 Proof.
-  intros Hf Hl C. destruct (C v) as (c & p & a & I & Hc & L).
-  pose proof (farthest_ok f v d (corners o) c p a Hf I Hc) as F. unfold reach_one.
-  destruct (farthest f (corners o)) as [u|]; [|destruct F]. cbn [option_map below_opt] in *.
-  apply below_weaken with ((dot v p + d + norm (times a v)) + V (radius o) * norm v); [lra|].
+  intros Hf Hl C. destruct o as [corners radius|]; [|exact I]. destruct (C v) as (c & p & a & Ic & Hc & L).
+  pose proof (farthest_ok f v d corners c p a Hf Ic Hc) as F. unfold reach_one.
+  destruct (farthest f corners) as [u|]; [|exact I]. cbn [option_map below_opt] in *.
+  apply below_weaken with ((dot v p + d + norm (times a v)) + V radius * norm v); [lra|].
   apply below_add; [exact F|]. apply below_const.
-  pose proof (norm_nonneg v). destruct (V_max 0 (radius o)) as [M1 M2]. rewrite V_0 in M1.
-  apply Rle_trans with (V (Z.max 0 (radius o)) * norm v); [apply Rmult_le_compat_r; assumption|].
+  pose proof (norm_nonneg v). destruct (V_max 0 radius) as [M1 M2]. rewrite V_0 in M1.
+  apply Rle_trans with (V (Z.max 0 radius) * norm v); [apply Rmult_le_compat_r; assumption|].
   eapply Rle_trans; [|apply mulup_ge]. apply Rmult_le_compat_l; assumption.
 Qed.
 
 Lemma reach_ok f v d l os o x : holdsf s f v d -> norm v <= V l -> In o os -> covers s o x ->
   below_opt (reach f l os) s (dot v x + d).
 Proof.
-  intros Hf Hl I C. induction os as [|o' os IH]; [destruct I|]. cbn [reach]. destruct I as [->|I].
-  - apply below_join_l. apply reach_one_ok; assumption.
-  - apply below_join_r. apply IH. exact I.
+  intros Hf Hl I C. pose proof (reach_one_ok f v d l o x Hf Hl C) as K. induction os as [|o' os IH]; [destruct I|].
+  cbn [reach]. destruct os as [|o'' os].
+  - destruct I as [->|[]]. exact K.
+  - destruct I as [->|I]; [apply below_join_l; exact K | apply below_join_r; apply IH; exact I].
 Qed.
 
 End AtOneTime.
@@ -422,38 +454,71 @@ End AtOneTime.
 Record sbody := Sbody { sb_frame : nat; sb_place : step }.
 Record partner := Partner { p_body : sbody; p_pieces : list outline; p_margin : Z; p_from : Z }.
 
-(** A direction that is constant in a frame: three integers in units of 2^-64. *)
-Record direction := Direction { d_frame : nat; d1 : Z; d2 : Z; d3 : Z }.
-Definition length_up (n : direction) : Z := Z.sqrt_up (d1 n * d1 n + d2 n * d2 n + d3 n * d3 n).
-Definition func_of (n : direction) : func := Func (Tvec (const (d1 n) 0) (const (d2 n) 0) (const (d3 n) 0)) tm_zero.
+(** A function f(x) = v.x + d with constant v and d in a frame. It is to be above 0 on A and below on the partners; which
+    of them is a wall, on all of which it is known to be so (or 0)? *)
+Inductive side := NoWall | OwnWall | PartnersWall.
+Record line := Line { l_frame : nat; l_func : func; l_side : side }.
+
+(** A direction as three integers in units of 2^-64. *)
+Definition along (i : nat) (x y z : Z) : line := Line i (Func (Tvec (const x 0) (const y 0) (const z 0)) tm_zero) NoWall.
+
 Definition opposite (f : func) : func :=
   Func (Tvec (tm_opp (tx (fv f))) (tm_opp (ty (fv f))) (tm_opp (tz (fv f)))) (tm_opp (fd f)).
 
-Definition shown (fs : tree) (known : list (nat * func)) (l : Z) (ua : option upper) (p : partner) : bool :=
+(** d - n.x of the wall n.x <= d; of the other side of a plane n.x - d. *)
+Definition wall_func (o : outline) (turned : bool) : option func :=
+  match o with
+  | Outline _ _ => None
+  | Wall n d both =>
+      let f := Func (tm_point n) (tm_opp (tm_number d)) in
+      if turned then (if both then Some f else None) else Some (opposite f)
+  end.
+
+(** The line of a wall, which A or the partner is. *)
+Definition wall_line (A : sbody) (os : list outline) (p : partner) (turned : bool) : option line :=
+  match os, p_pieces p with
+  | [Wall _ _ _ as o], _ =>
+      option_map (fun f => Line (sb_frame A) (up (sb_place A) f) OwnWall) (wall_func o turned)
+  | _, [o] =>
+      option_map (fun f => Line (sb_frame (p_body p)) (up (sb_place (p_body p)) (opposite f)) PartnersWall)
+        (wall_func o turned)
+  | _, _ => None
+  end.
+
+(** At least the length of v. *)
+Definition length_up (v : tvec) : Z :=
+  Z.sqrt_up (bound (tx v) * bound (tx v) + bound (ty v) * bound (ty v) + bound (tz v) * bound (tz v)).
+
+Definition own_reach (sd : side) (f : func) (l : Z) (os : list outline) : option upper :=
+  match sd with OwnWall => Some (upper_const 0) | _ => reach (opposite f) l os end.
+Definition partners_reach (sd : side) (f : func) (l : Z) (os : list outline) : option upper :=
+  match sd with PartnersWall => Some (upper_const 0) | _ => reach f l os end.
+
+Definition shown (fs : tree) (known : list (nat * func)) (sd : side) (l : Z) (ua : option upper) (p : partner) : bool :=
   match at_frame (length fs) fs known (sb_frame (p_body p)) with
   | None => false
   | Some f =>
-      match ua, reach (down (sb_place (p_body p)) f) l (p_pieces p) with
+      match ua, partners_reach sd (down (sb_place (p_body p)) f) l (p_pieces p) with
       | Some u, Some w => negative (upper_add (upper_add u w) (upper_const (mulup (Z.max 0 (p_margin p)) l)))
-      | _, _ => true                                       (* a body without points *)
+      | _, _ => false
       end
   end.
 
 (** The partners that are not shown to be apart from pieces [os] of A over [a, b]. *)
-Definition not_shown (sfs : list sframe) (q : spiece) (A : sbody) (os : list outline) (n : direction)
+Definition not_shown (sfs : list sframe) (q : spiece) (A : sbody) (os : list outline) (n : line)
     (ps : list partner) (a b : Z) : list partner :=
   let fs := tree_at sfs q a b in
-  let known := chain (length fs) fs (d_frame n) (func_of n) in
+  let known := chain (length fs) fs (l_frame n) (l_func n) in
   match at_frame (length fs) fs known (sb_frame A) with
   | None => ps
   | Some f =>
-      let l := length_up n in
-      let ua := reach (opposite (down (sb_place A) f)) l os in
-      filter (fun p => negb (shown fs known l ua p)) ps
+      let l := length_up (fv (l_func n)) in
+      let ua := own_reach (l_side n) (down (sb_place A) f) l os in
+      filter (fun p => negb (shown fs known (l_side n) l ua p)) ps
   end.
 
 (** Time is halved for those that are left, [fuel] times. *)
-Fixpoint separated (fuel : nat) (sfs : list sframe) (q : spiece) (A : sbody) (os : list outline) (n : direction)
+Fixpoint separated (fuel : nat) (sfs : list sframe) (q : spiece) (A : sbody) (os : list outline) (n : line)
     (ps : list partner) (a b : Z) : bool :=
   match not_shown sfs q A os n ps a b with
   | [] => true
@@ -472,14 +537,73 @@ Definition keeps (P : nat -> vec -> vec) (A : sbody) (os : list outline) (p : pa
   forall x y o o', In o os -> (forall s, covers s o x) -> In o' (p_pieces p) -> (forall s, covers s o' y) ->
   V (p_margin p) < norm (sub (P (sb_frame A) (F x)) (P (sb_frame (p_body p)) (G y))).
 
-Lemma length_up_ok n : norm (Vec (V (d1 n)) (V (d2 n)) (V (d3 n))) <= V (length_up n).
-Proof. apply integer_length. Qed.
+Lemma length_up_ok s m v : Rabs s <= 1 -> holdsv m s v -> norm v <= V (length_up m).
+Proof.
+  intros Hs (Hx & Hy & Hz). apply (bound_ge _ s _ Hs) in Hx, Hy, Hz.
+  eapply Rle_trans; [|apply (integer_length (bound (tx m)) (bound (ty m)) (bound (tz m)))].
+  unfold norm. apply sqrt_le_1_alt. unfold dot; cbn [vx vy vz].
+  assert (S : forall x y, Rabs x <= y -> x * x <= y * y).
+  { intros x y H. apply abs_in in H. nra. }
+  repeat apply Rplus_le_compat; apply S; assumption.
+Qed.
 
 Lemma opposite_ok s f v d : holdsf s f v d -> holdsf s (opposite f) (scale (-1) v) (- d).
 Proof.
   intros ((A & B & C) & D). split; [|apply holds_opp; exact D]. unfold scale.
   repeat split; cbn [opposite fv tx ty tz vx vy vz];
     (eapply holds_eq; [|apply holds_opp; eassumption]; ring).
+Qed.
+
+(** The line keeps its promise: it is at least 0 on A if A is its wall, at most 0 on the partner if that is. *)
+Definition line_ok (n : line) (A : sbody) (os : list outline) (p : partner) : Prop :=
+  forall s F G, Rabs s <= 1 -> holds_step s (sb_place A) F -> holds_step s (sb_place (p_body p)) G ->
+  exists v d, holdsf s (l_func n) v d /\
+    match l_side n with
+    | NoWall => True
+    | OwnWall => l_frame n = sb_frame A /\ forall o x, In o os -> covers s o x -> 0 <= dot v (F x) + d
+    | PartnersWall =>
+        l_frame n = sb_frame (p_body p) /\ forall o y, In o (p_pieces p) -> covers s o y -> dot v (G y) + d <= 0
+    end.
+
+Lemma along_ok i x y z A os p : line_ok (along i x y z) A os p.
+Proof.
+  intros s F G _ _ _. exists (Vec (V x) (V y) (V z)), 0. split; [|exact I].
+  split; [repeat split; apply holds_exact | apply holds_zero].
+Qed.
+
+Lemma wall_func_ok s o turned f : wall_func o turned = Some f ->
+  exists v d, holdsf s f v d /\ forall x, covers s o x -> 0 <= dot v x + d.
+Proof.
+  destruct o as [|n d both]; [discriminate|]. cbn [wall_func]. set (g := Func _ _).
+  assert (H : holdsf s g (point n) (- real d)) by (split; [apply holdsv_point | apply holds_opp, holds_number]).
+  destruct turned; [destruct both; [|discriminate]|]; intros [= <-].
+  - exists (point n), (- real d). split; [exact H|]. intros x [_ E]. rewrite E by reflexivity. lra.
+  - exists (scale (-1) (point n)), (- - real d). split; [apply opposite_ok; exact H|]. intros x [L _].
+    replace (dot (scale (-1) (point n)) x) with (- dot (point n) x) by (unfold dot, scale; cbn [vx vy vz]; ring). lra.
+Qed.
+
+Lemma wall_line_ok A os p turned n : wall_line A os p turned = Some n -> line_ok n A os p.
+Proof.
+  assert (OWN : forall o f, wall_func o turned = Some f -> os = [o] ->
+    line_ok (Line (sb_frame A) (up (sb_place A) f) OwnWall) A os p).
+  { intros o f W -> s F G Hs HF HG. destruct (wall_func_ok s o turned f W) as (v & d & Hf & K).
+    destruct (up_ok s Hs _ F f v d HF Hf) as (v1 & d1 & H1 & _ & X). exists v1, d1. split; [exact H1|].
+    split; [reflexivity|]. intros o' x [<-|[]] C. rewrite X. apply K. exact C. }
+  assert (PART : forall o f, wall_func o turned = Some f -> p_pieces p = [o] ->
+    line_ok (Line (sb_frame (p_body p)) (up (sb_place (p_body p)) (opposite f)) PartnersWall) A os p).
+  { intros o f W E s F G Hs HF HG. destruct (wall_func_ok s o turned f W) as (v & d & Hf & K).
+    destruct (up_ok s Hs _ G _ _ _ HG (opposite_ok s f v d Hf)) as (v1 & d1 & H1 & _ & X). exists v1, d1.
+    split; [exact H1|]. split; [reflexivity|]. intros o' y I C. rewrite E in I. destruct I as [<-|[]].
+    specialize (K y C). cbn [l_side]. rewrite X.
+    replace (dot (scale (-1) v) y) with (- dot v y) by (unfold dot, scale; cbn [vx vy vz]; ring). lra. }
+  assert (P : match p_pieces p with [o] => option_map (fun f =>
+      Line (sb_frame (p_body p)) (up (sb_place (p_body p)) (opposite f)) PartnersWall) (wall_func o turned)
+      | _ => None end = Some n -> line_ok n A os p).
+  { destruct (p_pieces p) as [|o [|]] eqn:E; try discriminate. destruct (wall_func o turned) as [f|] eqn:W; [|discriminate].
+    intros [= <-]. apply (PART o f W). first [exact E | reflexivity]. }
+  unfold wall_line. destruct os as [|o [|]]; [exact P | | destruct o; exact P].
+  destruct o as [c r|nn dd bb]; [exact P|]. destruct (wall_func (Wall nn dd bb) turned) as [f|] eqn:W; [|discriminate].
+  intros [= <-]. exact (OWN _ f W eq_refl).
 Qed.
 
 (** Every frame but the world stands in one that is listed before it, and every body in a frame. *)
@@ -502,25 +626,23 @@ Qed.
 Lemma tree_length a b : length (tree_at sfs q a b) = length (frames w).
 Proof. unfold tree_at, sfs. rewrite !map_length. reflexivity. Qed.
 
-Lemma not_shown_ok A os n ps a b t P p : (d_frame n <= length (frames w))%nat ->
-  V a <= t <= V b -> frames_at w (value pc t) P -> In p ps -> 
+Lemma not_shown_ok A os n ps a b t P p : (l_frame n <= length (frames w))%nat -> line_ok n A os p ->
+  V a <= t <= V b -> frames_at w (value pc t) P -> In p ps ->
   In p (not_shown sfs q A os n ps a b) \/ keeps P A os p.
 Proof.
-  intros Hn Ht HP Ip. unfold not_shown. set (fs := tree_at sfs q a b).
-  set (known := chain (length fs) fs (d_frame n) (func_of n)).
+  intros Hn LO Ht HP Ip. unfold not_shown. set (fs := tree_at sfs q a b).
+  set (known := chain (length fs) fs (l_frame n) (l_func n)). set (l := length_up (fv (l_func n))).
   destruct (at_frame (length fs) fs known (sb_frame A)) as [f|] eqn:EA; [|left; exact Ip].
-  set (ua := reach (opposite (down (sb_place A) f)) (length_up n) os).
-  destruct (shown fs known (length_up n) ua p) eqn:ES.
+  set (ua := own_reach (l_side n) (down (sb_place A) f) l os).
+  destruct (shown fs known (l_side n) l ua p) eqn:ES.
   2:{ left. apply filter_In. split; [exact Ip|]. rewrite ES. reflexivity. }
   right. intros F G HF HG x y o o' Io Co Io' Co'.
   destruct (time_ok a b t Ht) as (s & Hs & Hts).
   specialize (HF s). specialize (HG s). specialize (Co s). specialize (Co' s).
   assert (CH : forall i k sts, nth_error fs i = Some (k, sts) ->
     exists E, holds_steps s sts E /\ forall x, P (S i) x = P k (E x)) by (apply tree_ok with t; assumption).
-  set (n0 := Vec (V (d1 n)) (V (d2 n)) (V (d3 n))).
-  assert (Hn0 : holdsf s (func_of n) n0 0).
-  { split; [repeat split; apply holds_exact | apply holds_zero]. }
-  destruct (chain_ok s Hs fs P (proj1 HP) CH (length fs) (d_frame n) (func_of n) n0 0) as (wv & e & Nw & _ & K).
+  destruct (LO s F G Hs HF HG) as (n0 & d0 & Hn0 & SIDE).
+  destruct (chain_ok s Hs fs P (proj1 HP) CH (length fs) (l_frame n) (l_func n) n0 d0) as (wv & e & Nw & Xw & K).
   - intros k p' sts. apply tree_parents.
   - unfold fs. rewrite tree_length. exact Hn.
   - unfold fs. rewrite tree_length. exact Hn.
@@ -532,23 +654,28 @@ Proof.
     destruct (at_frame (length fs) fs known (sb_frame (p_body p))) as [g|] eqn:EB; [|discriminate].
     pose proof (at_frame_ok s Hs fs P CH (length fs) wv e known K _ g EB) as IB.
     destruct (body_ok s Hs P wv e _ g _ G IB HG) as (vb & db & Hb & Nb & Xb).
-    assert (LN : forall v, dot v v = dot wv wv -> norm v <= V (length_up n)).
-    { intros v E. unfold norm. rewrite E, Nw. apply length_up_ok. }
-    assert (La : norm (scale (-1) va) <= V (length_up n)).
+    assert (LN : forall v, dot v v = dot wv wv -> norm v <= V l).
+    { intros v E. unfold norm. rewrite E, Nw. apply (length_up_ok s); [exact Hs | apply Hn0]. }
+    assert (La : norm (scale (-1) va) <= V l).
     { apply LN. rewrite <- Na. unfold dot, scale; cbn. ring. }
-    pose proof (reach_ok s Hs _ _ _ (length_up n) os o x (opposite_ok _ _ _ _ Ha) La Io Co) as Ra. fold ua in Ra.
-    pose proof (reach_ok s Hs _ _ _ (length_up n) (p_pieces p) o' y Hb (LN _ Nb) Io' Co') as Rb.
-    destruct ua as [u|]; [|destruct Ra]. destruct (reach _ _ (p_pieces p)) as [u'|]; [|destruct Rb].
+    set (X := P (sb_frame A) (F x)) in *. set (Y := P (sb_frame (p_body p)) (G y)) in *.
+    assert (E : dot (scale (-1) va) x + - da = - (dot wv X + e)).
+    { unfold X. rewrite Xa. unfold dot, scale; cbn. ring. }
+    assert (Ra : below_opt ua s (- (dot wv X + e))).
+    { pose proof (reach_ok s Hs _ _ _ l os o x (opposite_ok _ _ _ _ Ha) La Io Co) as Ra. rewrite E in Ra.
+      unfold ua, own_reach. destruct (l_side n); try exact Ra. destruct SIDE as [Q S].
+      apply below_const. specialize (S o x Io Co). rewrite V_0. unfold X. rewrite <- Q, Xw. lra. }
+    set (ub := partners_reach (l_side n) (down (sb_place (p_body p)) g) l (p_pieces p)) in *.
+    assert (Rb : below_opt ub s (dot wv Y + e)).
+    { pose proof (reach_ok s Hs _ _ _ l (p_pieces p) o' y Hb (LN _ Nb) Io' Co') as Rb. rewrite <- Xb in Rb.
+      unfold ub, partners_reach. destruct (l_side n); try exact Rb. destruct SIDE as [Q S].
+      apply below_const. specialize (S o' y Io' Co'). rewrite V_0. unfold Y. rewrite <- Q, Xw. exact S. }
+    destruct ua as [u|]; [|discriminate]. destruct ub as [u'|]; [|discriminate].
     cbn [below_opt] in Ra, Rb.
     set (mz := Z.max 0 (p_margin p)) in *. destruct (V_max 0 (p_margin p)) as [M0 M1]. fold mz in M0, M1. rewrite V_0 in M0.
-    assert (M : V mz * norm wv <= V (mulup mz (length_up n))).
+    assert (M : V mz * norm wv <= V (mulup mz l)).
     { eapply Rle_trans; [|apply mulup_ge]. apply Rmult_le_compat_l; [exact M0 | apply LN; reflexivity]. }
     pose proof (below_negative _ s _ Hs ES (below_add _ _ s _ _ (below_add _ _ s _ _ Ra Rb) (below_const _ s _ M))) as NEG.
-    set (X := P (sb_frame A) (F x)) in *. set (Y := P (sb_frame (p_body p)) (G y)) in *.
-    specialize (Xa x). specialize (Xb y). fold X in Xa. fold Y in Xb.
-    assert (E : dot (scale (-1) va) x + - da = - (dot wv X + e)).
-    { rewrite Xa. unfold dot, scale; cbn. ring. }
-    rewrite E, <- Xb in NEG.
     assert (D : V mz * norm wv < dot wv (sub X Y)).
     { replace (dot wv (sub X Y)) with (dot wv X - dot wv Y) by (unfold dot, sub, add, scale; cbn; ring). lra. }
     pose proof (cauchy wv (sub X Y)) as CS. pose proof (norm_nonneg wv).
@@ -557,16 +684,16 @@ Proof.
     lra.
 Qed.
 
-Theorem separated_ok fuel A os n : (d_frame n <= length (frames w))%nat ->
+Theorem separated_ok fuel A os n : (l_frame n <= length (frames w))%nat ->
   forall ps a b, separated fuel sfs q A os n ps a b = true ->
-  forall t P p, V a <= t <= V b -> frames_at w (value pc t) P -> In p ps -> keeps P A os p.
+  forall t P p, line_ok n A os p -> V a <= t <= V b -> frames_at w (value pc t) P -> In p ps -> keeps P A os p.
 Proof.
-  intros Hn. induction fuel as [|k IH]; intros ps a b H t P p Ht HP Ip;
-    destruct (not_shown_ok A os n ps a b t P p Hn Ht HP Ip) as [I|K]; auto; cbn [separated] in H;
+  intros Hn. induction fuel as [|k IH]; intros ps a b H t P p LO Ht HP Ip;
+    destruct (not_shown_ok A os n ps a b t P p Hn LO Ht HP Ip) as [I|K]; auto; cbn [separated] in H;
     destruct (not_shown sfs q A os n ps a b) as [|p' again]; try (destruct I; fail); try discriminate.
   apply andb_true_iff in H. destruct H as [H1 H2].
-  destruct (Rle_lt_dec t (V ((a + b) / 2))) as [L|G]; [eapply IH; [exact H1 | | exact HP | exact I]
-                                                     | eapply IH; [exact H2 | | exact HP | exact I]]; lra.
+  destruct (Rle_lt_dec t (V ((a + b) / 2))) as [L|G]; [eapply IH; [exact H1 | exact LO | | exact HP | exact I]
+                                                     | eapply IH; [exact H2 | exact LO | | exact HP | exact I]]; lra.
 Qed.
 
 End Sound.

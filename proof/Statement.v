@@ -61,7 +61,9 @@ Inductive geometry :=
   | Ellipsoid (semiaxes : numbers3)
   | Cylinder (radius length : number)
   | Cone (radius length : number)
-  | Hull (points : list numbers3).
+  | Hull (points : list numbers3)
+  | Halfspace (normal : numbers3) (offset : number)
+  | Plane (normal : numbers3) (offset : number).
 
 Inductive role := link | carried | obstacle.
 Record body := Body {
@@ -154,6 +156,8 @@ Definition inside (g : geometry) (x : vec) : Prop :=
   | Cone r l => exists h, 0 <= h <= 1 /\                  (* h: part of the way from the base to the apex *)
       norm (Vec (vx x) (vy x) 0) <= (1 - h) * real r /\ vz x = h * real l - real l / 2
   | Hull points => in_hull (map point points) x
+  | Halfspace n d => dot (point n) x <= real d
+  | Plane n d => dot (point n) x = real d
   end.
 
 (** y is where a point of body b stands in the world. *)

@@ -15,6 +15,7 @@ Inductive place := InWorld | InOwn | InPartners.
 
 Inductive node :=
   | Sep (where_ : place) (x y z : Z)
+  | AtWall (turned : bool)                                (* WALL *)
   | Time (first second : node)
   | Partners (count : nat) (first second : node)
   | Own (count : nat) (first second : node)
@@ -39,15 +40,21 @@ Variable sfs : list sframe.
 Variable q : spiece.
 Variable A : sbody.
 
+(** Partners that are ignored up to a time take part from then on. *)
+Definition leaf (n : line) (os : list outline) (ps : list partner) (a b : Z) : bool :=
+  Nat.leb (l_frame n) (length sfs) &&
+  separated leaf_halvings sfs q A os n (filter (fun p => Z.leb (p_from p) a) ps) a b &&
+  forallb (fun p => Z.leb (p_from p) a || Z.leb b (p_from p) ||
+                    separated leaf_halvings sfs q A os n [p] (p_from p) b) ps.
+
 Fixpoint check (nd : node) (os : list outline) (ps : list partner) (a b : Z) : bool :=
   match nd with
-  | Sep where_ x y z =>
-      let i := frame_of where_ A ps in
-      let n := Direction i x y z in
-      Nat.leb i (length sfs) &&
-      separated leaf_halvings sfs q A os n (filter (fun p => Z.leb (p_from p) a) ps) a b &&
-      forallb (fun p => Z.leb (p_from p) a || Z.leb b (p_from p) ||
-                        separated leaf_halvings sfs q A os n [p] (p_from p) b) ps
+  | Sep where_ x y z => leaf (along (frame_of where_ A ps) x y z) os ps a b
+  | AtWall turned =>
+      match ps with
+      | [p] => match wall_line A os p turned with Some n => leaf n os ps a b | None => false end
+      | _ => false
+      end
   | Time l r => let c := ((a + b) / 2)%Z in check l os ps a c && check r os ps c b
   | Partners k l r => cuts k (length ps) && (check l os (firstn k ps) a b && check r os (skipn k ps) a b)
   | Own k l r => cuts k (length os) && (check l (firstn k os) ps a b && check r (skipn k os) ps a b)
@@ -156,18 +163,26 @@ Hypothesis WF : well_formed w.
 Variable m : motion.
 Let sfs := map sframe_of (frames w).
 
+Lemma leaf_ok pc A n os ps a b : leaf sfs (spiece_of pc) A n os ps a b = true ->
+  forall t P p, line_ok n A os p -> V a <= t <= V b -> frames_at w (value pc t) P -> In p ps -> V (p_from p) < t ->
+  keeps P A os p.
+Proof.
+  unfold leaf. rewrite !andb_true_iff. intros [[L S1] S2] t P p LO Ht HP Ip Hp. apply Nat.leb_le in L.
+  unfold sfs in L. rewrite map_length in L. rewrite forallb_forall in S2. specialize (S2 p Ip).
+  rewrite !orb_true_iff in S2. destruct S2 as [[E|E]|E]; [| apply Z.leb_le, V_le in E; lra |].
+  - eapply separated_ok; [exact WF | exact L | exact S1 | exact LO | exact Ht | exact HP|]. apply filter_In. split; assumption.
+  - eapply separated_ok; [exact WF | exact L | exact E | exact LO | | exact HP | left; reflexivity]. lra.
+Qed.
+
 Lemma check_ok pc A nd : forall os ps a b, check sfs (spiece_of pc) A nd os ps a b = true ->
   forall t P p, V a <= t <= V b -> frames_at w (value pc t) P -> In p ps -> V (p_from p) < t -> keeps P A os p.
 Proof.
-  induction nd as [wh x y z | l IHl r IHr | k l IHl r IHr | k l IHl r IHr | k l IHl r IHr];
+  induction nd as [wh x y z | turned | l IHl r IHr | k l IHl r IHr | k l IHl r IHr | k l IHl r IHr];
     intros os ps a b H t P p Ht HP Ip Hp; cbn [check] in H.
-  - rewrite !andb_true_iff in H. destruct H as [[L S1] S2]. apply Nat.leb_le in L.
-    assert (D : (d_frame (Direction (frame_of wh A ps) x y z) <= length (frames w))%nat).
-    { cbn [d_frame]. unfold sfs in L. rewrite map_length in L. exact L. }
-    rewrite forallb_forall in S2. specialize (S2 p Ip). rewrite !orb_true_iff in S2.
-    destruct S2 as [[E|E]|E]; [| apply Z.leb_le, V_le in E; lra |].
-    + eapply separated_ok; [exact WF | exact D | exact S1 | exact Ht | exact HP|]. apply filter_In. split; assumption.
-    + eapply separated_ok; [exact WF | exact D | exact E | | exact HP | left; reflexivity]. lra.
+  - eapply leaf_ok; [exact H | apply along_ok | exact Ht | exact HP | exact Ip | exact Hp].
+  - destruct ps as [|p' [|]]; try discriminate. destruct Ip as [->|[]].
+    destruct (wall_line A os p turned) as [n|] eqn:W; [|discriminate].
+    eapply leaf_ok; [exact H | eapply wall_line_ok; exact W | exact Ht | exact HP | left; reflexivity | exact Hp].
   - apply andb_true_iff in H. destruct H as [H1 H2].
     destruct (Rle_lt_dec t (V ((a + b) / 2))) as [L|G]; [eapply IHl; [exact H1 | | exact HP | exact Ip | exact Hp]
                                                        | eapply IHr; [exact H2 | | exact HP | exact Ip | exact Hp]]; lra.

@@ -216,7 +216,13 @@ let geometry l =
       let length = not_negative l in
       last l;
       if kind = "cylinder" then Cylinder (r, length) else Cone (r, length)
-  | ("halfspace" | "plane") as kind -> scope l ("geometry " ^ kind)
+  | ("halfspace" | "plane") as kind ->
+      let normal = three l number in
+      let offset = number l in
+      last l;
+      if List.for_all (fun x -> Z.sign x.mantissa = 0) [ normal.n1; normal.n2; normal.n3 ] then
+        fail l "the normal is the zero vector";
+      if kind = "plane" then Plane (normal, offset) else Halfspace (normal, offset)
   | kind -> fail l ("there is no geometry '" ^ kind ^ "'")
 
 let world text =
@@ -424,6 +430,8 @@ let rec node b depth =
       let y = entry () in
       let z = entry () in
       Sep ((match k mod 3 with 0 -> InWorld | 1 -> InOwn | _ -> InPartners), x, y, z)
+  | 0x09 -> AtWall false
+  | 0x0a -> AtWall true
   | 0x10 -> two (fun l r -> Time (l, r))
   | 0x11 ->
       let c = varint b in
@@ -434,7 +442,6 @@ let rec node b depth =
   | 0x13 ->
       let c = varint b in
       two (fun l r -> Other (c, l, r))
-  | 0x09 | 0x0a -> raise (Out_of_scope "the proof: WALL")
   | 0x14 -> raise (Out_of_scope "the proof: SOLID")
   | 0x20 -> raise (Out_of_scope "the proof: a contact")
   | k -> raise (Bad_input (Printf.sprintf "there is no node of kind %d" k))
