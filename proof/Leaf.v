@@ -627,7 +627,7 @@ Lemma tree_length a b : length (tree_at sfs q a b) = length (frames w).
 Proof. unfold tree_at, sfs. rewrite !map_length. reflexivity. Qed.
 
 Lemma not_shown_ok A os n ps a b t P p : (l_frame n <= length (frames w))%nat -> line_ok n A os p ->
-  V a <= t <= V b -> frames_at w (value pc t) P -> In p ps ->
+  V a <= t <= V b -> frames_at w (at_time pc t) P -> In p ps ->
   In p (not_shown sfs q A os n ps a b) \/ keeps P A os p.
 Proof.
   intros Hn LO Ht HP Ip. unfold not_shown. set (fs := tree_at sfs q a b).
@@ -686,7 +686,7 @@ Qed.
 
 Theorem separated_ok fuel A os n : (l_frame n <= length (frames w))%nat ->
   forall ps a b, separated fuel sfs q A os n ps a b = true ->
-  forall t P p, line_ok n A os p -> V a <= t <= V b -> frames_at w (value pc t) P -> In p ps -> keeps P A os p.
+  forall t P p, line_ok n A os p -> V a <= t <= V b -> frames_at w (at_time pc t) P -> In p ps -> keeps P A os p.
 Proof.
   intros Hn. induction fuel as [|k IH]; intros ps a b H t P p LO Ht HP Ip;
     destruct (not_shown_ok A os n ps a b t P p Hn LO Ht HP Ip) as [I|K]; auto; cbn [separated] in H;

@@ -127,16 +127,27 @@ Fixpoint check_pieces (w : world) (m : motion) (sfs : list sframe) (bs : list pr
       end
   end.
 
-(** Whether pieces join; 2^35, 2^44: 2^-29 and 2^-20 in units. *)
-Definition element_joins (p p' : piece) (e : element) : bool :=
-  let '(v, m) := match e with Turn _ v m _ => (v, m) | Slide _ v m _ => (v, m) end in
+(** Whether pieces join; 2^35, 2^44, 2^37: 2^-29, 2^-20 and 2^-27 in units. *)
+Definition value_joins (p p' : piece) (v : nat) (m : number) : bool :=
   let x := tm_mul (tm_number m) (value_tm p one v) in
   let y := tm_mul (tm_number m) (value_tm p' 0 v) in
   Z.leb (bound (tm_sub x y)) (2 ^ 35 + Z.min (Z.shiftr (Z.abs (c0 x) - rem x) 39) (2 ^ 44)).
+
+(** The rows of a frame's rotation, each as what a coordinate of the parent is in the frame. *)
+Definition units : list tvec :=
+  [Tvec tm_one tm_zero tm_zero; Tvec tm_zero tm_one tm_zero; Tvec tm_zero tm_zero tm_one].
+Definition rows (f : frame) (p : piece) (t : Z) : list tvec :=
+  let sts := placed (origin f) :: flat_map (steps_of (state_at (spiece_of p) (const t 0))) (map selement_of (elements f)) in
+  map (fun n => fv (down_all sts (Func n tm_zero))) units.
+Definition row_joins (r r' : tvec) : bool :=
+  let near x y := Z.leb (bound (tm_sub x y)) (2 ^ 37) in near (tx r) (tx r') && near (ty r) (ty r') && near (tz r) (tz r').
+Definition frame_joins (p p' : piece) (f : frame) : bool :=
+  forallb (fun e => match e with Turn _ v m _ | Slide _ v m _ => value_joins p p' v m | Rotate _ => true end) (elements f) &&
+  (negb (existsb (fun e => match e with Rotate _ => true | _ => false end) (elements f)) ||
+   forallb (fun rr => row_joins (fst rr) (snd rr)) (combine (rows f p one) (rows f p' 0))).
 Fixpoint pieces_join (w : world) (ps : list piece) : bool :=
   match ps with
-  | p :: (p' :: _) as rest =>
-      forallb (fun f => forallb (element_joins p p') (elements f)) (frames w) && pieces_join w rest
+  | p :: (p' :: _) as rest => forallb (frame_joins p p') (frames w) && pieces_join w rest
   | _ => true
   end.
 
@@ -145,11 +156,11 @@ Fixpoint parents_ok (i : nat) (fs : list frame) : bool :=
 Definition is_well_formed (w : world) : bool :=
   parents_ok 0 (frames w) && forallb (fun b => Nat.leb (body_frame b) (length (frames w))) (bodies w).
 
-Definition is_meaningful (w : world) : bool :=
-  forallb frame_means (frames w) && forallb (fun b => has_rotation (body_place b)) (bodies w).
+Definition is_meaningful (w : world) (m : motion) : bool :=
+  forallb frame_means (frames w) && forallb piece_means (pieces m) && forallb (fun b => has_rotation (body_place b)) (bodies w).
 
 Definition accepts (w : world) (m : motion) (nodes : list node) : bool :=
-  is_well_formed w && is_meaningful w && pieces_join w (pieces m) &&
+  is_well_formed w && is_meaningful w m && pieces_join w (pieces m) &&
   match check_pieces w m (map sframe_of (frames w)) (prepare_all 0 (bodies w)) (pieces m) nodes with
   | Some [] => true
   | _ => false
@@ -164,7 +175,7 @@ Variable m : motion.
 Let sfs := map sframe_of (frames w).
 
 Lemma leaf_ok pc A n os ps a b : leaf sfs (spiece_of pc) A n os ps a b = true ->
-  forall t P p, line_ok n A os p -> V a <= t <= V b -> frames_at w (value pc t) P -> In p ps -> V (p_from p) < t ->
+  forall t P p, line_ok n A os p -> V a <= t <= V b -> frames_at w (at_time pc t) P -> In p ps -> V (p_from p) < t ->
   keeps P A os p.
 Proof.
   unfold leaf. rewrite !andb_true_iff. intros [[L S1] S2] t P p LO Ht HP Ip Hp. apply Nat.leb_le in L.
@@ -175,7 +186,7 @@ Proof.
 Qed.
 
 Lemma check_ok pc A nd : forall os ps a b, check sfs (spiece_of pc) A nd os ps a b = true ->
-  forall t P p, V a <= t <= V b -> frames_at w (value pc t) P -> In p ps -> V (p_from p) < t -> keeps P A os p.
+  forall t P p, V a <= t <= V b -> frames_at w (at_time pc t) P -> In p ps -> V (p_from p) < t -> keeps P A os p.
 Proof.
   induction nd as [wh x y z | turned | l IHl r IHr | k l IHl r IHr | k l IHl r IHr | k l IHl r IHr];
     intros os ps a b H t P p Ht HP Ip Hp; cbn [check] in H.
@@ -224,7 +235,7 @@ Qed.
 Lemma root_ok pc u nd i j (a b : body) (before : list prepared) t : In (prepare i a) before -> checked w m a b = true ->
   check sfs (spiece_of pc) (pr_sbody (prepare j b)) nd (pr_pieces (prepare j b))
     (map (partner_of w m pc (prepare j b)) (filter (fun p => checked w m (pr_body p) b) before)) 0 u = true ->
-  0 <= t <= V u -> (forall v, In (i, j, v) (ignored pc) -> real v < t) -> apart w m (value pc t) a b.
+  0 <= t <= V u -> (forall v, In (i, j, v) (ignored pc) -> real v < t) -> apart w m (at_time pc t) a b.
 Proof.
   intros Ia C H Ht HI P A B HP HA HB x y (x' & Ix & ->) (y' & Iy & ->).
   assert (Ip : In (partner_of w m pc (prepare j b) (prepare i a))
@@ -246,7 +257,7 @@ Lemma check_bodies_ok pc u rest : forall n before nodes left,
   forall k b i a t, nth_error rest k = Some b ->
   In (prepare i a) before \/ (exists k', (k' < k)%nat /\ nth_error rest k' = Some a /\ i = (n + k')%nat) ->
   checked w m a b = true -> 0 <= t <= V u -> (forall v, In (i, (n + k)%nat, v) (ignored pc) -> real v < t) ->
-  apart w m (value pc t) a b.
+  apart w m (at_time pc t) a b.
 Proof.
   induction rest as [|c rest IH]; intros n before nodes left H k b i a t Nb Ia C Ht HI.
   - destruct k; discriminate.
@@ -262,7 +273,7 @@ Proof.
         change (filter (fun p => checked w m (pr_body p) b) before) with found. rewrite F. exact K.
     + cbn [nth_error] in Nb.
       assert (LATER : forall nodes', check_bodies w m sfs pc u (before ++ [prepare n c])
-        (prepare_all (S n) rest) nodes' = Some left -> apart w m (value pc t) a b).
+        (prepare_all (S n) rest) nodes' = Some left -> apart w m (at_time pc t) a b).
       { intros nodes' H'. replace (n + S k)%nat with (S n + k)%nat in HI by lia.
         apply (IH _ _ _ _ H' k b i a t Nb); [|exact C | exact Ht | exact HI].
         destruct Ia as [Ia|(k' & L & Na & ->)]; [left; apply in_or_app; left; exact Ia|].
@@ -287,12 +298,11 @@ Proof.
   - cbn [nth_error] in N. destruct (IH _ _ H k p N) as (n' & l' & E). exists n', l'. exact E.
 Qed.
 
-Lemma element_joins_ok p p' e : element_joins p p' e = true ->
-  let '(v, mm) := match e with Turn _ v m _ => (v, m) | Slide _ v m _ => (v, m) end in
+Lemma value_joins_ok p p' v mm : value_joins p p' v mm = true ->
   let x := real mm * value p 1 v in
   Rabs (x - real mm * value p' 0 v) <= / 2 ^ 29 + Rmin (Rabs x / 2 ^ 39) (/ 2 ^ 20).
 Proof.
-  unfold element_joins. destruct (match e with Turn _ v m _ => (v, m) | Slide _ v m _ => (v, m) end) as [v mm].
+  unfold value_joins.
   intros H. apply Z.leb_le, V_le in H. set (xm := tm_mul (tm_number mm) (value_tm p one v)) in *.
   assert (Z1 : Rabs 0 <= 1) by (rewrite Rabs_R0; lra).
   pose proof (value_ok p one v) as H1. rewrite V_one in H1. pose proof (value_ok p' 0 v) as H0. rewrite V_0 in H0.
@@ -319,6 +329,74 @@ Proof.
   cbv zeta. lra.
 Qed.
 
+(** What a row says at one time: the coordinate n of the ways of the axes. *)
+Lemma row_ok sts E n nm : holds_steps 0 sts E -> holdsv nm 0 n ->
+  let r := fv (down_all sts (Func nm tm_zero)) in
+  holds (tx r) 0 (dot n (way E (Vec 1 0 0))) /\ holds (ty r) 0 (dot n (way E (Vec 0 1 0))) /\
+  holds (tz r) 0 (dot n (way E (Vec 0 0 1))).
+Proof.
+  intros HE Hn. assert (Z1 : Rabs 0 <= 1) by (rewrite Rabs_R0; lra).
+  destruct (down_all_ok 0 Z1 sts E (Func nm tm_zero) n 0 HE) as (v & d & [(A & B & C) _] & _ & X).
+  { split; [exact Hn | apply holds_zero]. }
+  assert (W : forall a, dot n (way E a) = dot v a).
+  { intros a. unfold way. replace (dot n (sub (E a) (E (Vec 0 0 0)))) with ((dot n (E a) + 0) - (dot n (E (Vec 0 0 0)) + 0))
+      by (unfold dot, sub, add, scale; cbn [vx vy vz]; ring). rewrite !X. unfold dot; cbn [vx vy vz]. ring. }
+  cbv zeta. rewrite !W. repeat split; (eapply holds_eq; [|eassumption]; unfold dot; cbn [vx vy vz]; ring).
+Qed.
+
+Lemma row_joins_ok r r' x y z x' y' z' : row_joins r r' = true ->
+  (holds (tx r) 0 x /\ holds (ty r) 0 y /\ holds (tz r) 0 z) ->
+  (holds (tx r') 0 x' /\ holds (ty r') 0 y' /\ holds (tz r') 0 z') ->
+  Rabs (x - x') <= / 2 ^ 27 /\ Rabs (y - y') <= / 2 ^ 27 /\ Rabs (z - z') <= / 2 ^ 27.
+Proof.
+  unfold row_joins. rewrite !andb_true_iff, !Z.leb_le. intros [[L1 L2] L3] (A & B & C) (A' & B' & C').
+  assert (Z1 : Rabs 0 <= 1) by (rewrite Rabs_R0; lra).
+  assert (E : V (2 ^ 37) = / 2 ^ 27) by (symmetry; exact (power_neg 27 ltac:(lia))).
+  apply V_le in L1, L2, L3. rewrite E in L1, L2, L3.
+  pose proof (bound_ge _ 0 _ Z1 (holds_sub _ _ _ _ _ A A')). pose proof (bound_ge _ 0 _ Z1 (holds_sub _ _ _ _ _ B B')).
+  pose proof (bound_ge _ 0 _ Z1 (holds_sub _ _ _ _ _ C C')). repeat split; lra.
+Qed.
+
+Lemma frame_joins_ok p p' f : frame_joins p p' f = true -> forall e, In e (elements f) ->
+  match e with
+  | Turn _ v m _ | Slide _ v m _ =>
+      let x := real m * value p 1 v in
+      Rabs (x - real m * value p' 0 v) <= / 2 ^ 29 + Rmin (Rabs x / 2 ^ 39) (/ 2 ^ 20)
+  | Rotate _ =>
+      forall O M M', pose_map (origin f) O -> elements_map (at_time p 1) (elements f) M ->
+      elements_map (at_time p' 0) (elements f) M' ->
+      forall axis, In axis [Vec 1 0 0; Vec 0 1 0; Vec 0 0 1] ->
+      near (/ 2 ^ 27) (way (fun x => O (M x)) axis) (way (fun x => O (M' x)) axis)
+  end.
+Proof.
+  unfold frame_joins. rewrite andb_true_iff, forallb_forall. intros [H1 H2] e Ie. specialize (H1 e Ie).
+  destruct e as [a v mm c | a v mm c | v]; [apply value_joins_ok; exact H1 | apply value_joins_ok; exact H1|].
+  intros O M M' HO HM HM'. apply orb_true_iff in H2. destruct H2 as [H2|H2].
+  { apply negb_true_iff in H2. assert (K : existsb (fun e => match e with Rotate _ => true | _ => false end) (elements f) = true)
+      by (apply existsb_exists; exists (Rotate v); split; [exact Ie | reflexivity]). congruence. }
+  assert (Z1 : Rabs 0 <= 1) by (rewrite Rabs_R0; lra).
+  assert (ST : forall pc t N, elements_map (at_time pc (V t)) (elements f) N ->
+    holds_steps 0 (placed (origin f) :: flat_map (steps_of (state_at (spiece_of pc) (const t 0))) (map selement_of (elements f)))
+      (fun x => O (N x))).
+  { intros pc t N HN. apply first_step with (E := O) (M := N); [apply placed_ok; exact HO | | reflexivity].
+    apply all_steps_ok with (at_time pc (V t)); [exact Z1 | apply state_ok; [exact Z1 | apply holds_exact] | exact HN]. }
+  rewrite <- V_one in HM. rewrite <- V_0 in HM'. pose proof (ST p one M HM) as S1. pose proof (ST p' 0%Z M' HM') as S2.
+  assert (U : Forall2 (fun m n => holdsv m 0 n) units [Vec 1 0 0; Vec 0 1 0; Vec 0 0 1]).
+  { repeat (apply Forall2_cons; [repeat split; cbn [tx ty tz vx vy vz]; try apply holds_zero; apply holds_one|]). constructor. }
+  unfold rows in H2.
+  set (sts1 := placed (origin f) :: flat_map (steps_of (state_at (spiece_of p) (const one 0))) (map selement_of (elements f))) in *.
+  set (sts2 := placed (origin f) :: flat_map (steps_of (state_at (spiece_of p') (const 0 0))) (map selement_of (elements f))) in *.
+  unfold units in *. cbn [map combine forallb fst snd] in H2. rewrite !andb_true_iff in H2. destruct H2 as (J1 & J2 & J3 & _).
+  inversion U as [|? ? ? ? U1 U' ]; subst. inversion U' as [|? ? ? ? U2 U'' ]; subst. inversion U'' as [|? ? ? ? U3 _ ]; subst.
+  pose proof (row_joins_ok _ _ _ _ _ _ _ _ J1 (row_ok _ _ _ _ S1 U1) (row_ok _ _ _ _ S2 U1)) as (A1 & A2 & A3).
+  pose proof (row_joins_ok _ _ _ _ _ _ _ _ J2 (row_ok _ _ _ _ S1 U2) (row_ok _ _ _ _ S2 U2)) as (B1 & B2 & B3).
+  pose proof (row_joins_ok _ _ _ _ _ _ _ _ J3 (row_ok _ _ _ _ S1 U3) (row_ok _ _ _ _ S2 U3)) as (C1 & C2 & C3).
+  assert (D : forall a, dot (Vec 1 0 0) a = vx a /\ dot (Vec 0 1 0) a = vy a /\ dot (Vec 0 0 1) a = vz a).
+  { intros a. unfold dot; cbn [vx vy vz]. repeat split; ring. }
+  rewrite ?(proj1 (D _)), ?(proj1 (proj2 (D _))), ?(proj2 (proj2 (D _))) in *.
+  intros axis [<-|[<-|[<-|[]]]]; repeat split; assumption.
+Qed.
+
 Lemma pieces_join_ok ps : pieces_join w ps = true ->
   forall k p p', nth_error ps k = Some p -> nth_error ps (S k) = Some p' -> joined w p p'.
 Proof.
@@ -326,8 +404,7 @@ Proof.
   destruct rest as [|p1 rest]; [destruct k as [|[|]]; discriminate|].
   cbn [pieces_join] in H. apply andb_true_iff in H. destruct H as [H1 H2]. destruct k as [|k].
   - cbn in Np, Np'. injection Np as <-. injection Np' as <-. intros f e If Ie.
-    rewrite forallb_forall in H1. specialize (H1 f If). rewrite forallb_forall in H1.
-    exact (element_joins_ok p0 p1 e (H1 e Ie)).
+    rewrite forallb_forall in H1. exact (frame_joins_ok p0 p1 f (H1 f If) e Ie).
   - exact (IH H2 k p p' Np Np').
 Qed.
 End Sound.
@@ -349,8 +426,8 @@ Proof.
     - intros i f N. exact (parents_ok_spec _ 0 H1 i f N).
     - intros b I. rewrite forallb_forall in H2. apply Nat.leb_le, H2, I. }
   split; [|split].
-  { apply andb_true_iff in HM. destruct HM as [M1 M2]. split.
-    - intros q. apply frames_exist; [apply WF | exact M1].
+  { unfold is_meaningful in HM. rewrite !andb_true_iff in HM. destruct HM as [[M1 M3] M2]. split.
+    - intros p t I. rewrite forallb_forall in M3. apply frames_exist; [apply piece_means_ok, M3, I | apply WF | exact M1].
     - intros b I. rewrite forallb_forall in M2. apply has_rotation_ok, M2, I. }
   { apply pieces_join_ok. exact HJ. }
   intros k p Np i j a b Hij Na Nb C t Ht HI.

@@ -256,7 +256,14 @@ let world text =
             last l;
             let e = if kind = "turn" then Turn (axis, v, m, c) else Slide (axis, v, m, c) in
             frames := { f with elements = f.elements @ [ e ] } :: rest)
-    | "rotate" -> scope l "rotate"
+    | "rotate" -> (
+        match !frames with
+        | [] -> fail l "an element comes after its frame"
+        | f :: rest ->
+            let v = integer l !variables in
+            if v + 2 >= !variables then fail l "'rotate' takes three variables";
+            last l;
+            frames := { f with elements = f.elements @ [ Rotate v ] } :: rest)
     | "geometry" -> geometries := Array.append !geometries [| geometry l |]
     | "body" ->
         let body_role =
@@ -314,7 +321,7 @@ let motion text variables bodies =
   let l = start text "motion" "fcl_artic motion 1" in
   let world = ref None and margin = ref None and added = ref None and reach = ref None in
   let duration = ref None and until = ref None in
-  let values = ref [] and left_out = ref [] in  (* of each piece, the last one first *)
+  let values = ref [] and turned = ref [] and left_out = ref [] in  (* of each piece, the last one first *)
   let set item value =
     if !item <> None then fail l "the item is there already";
     if !values <> [] then fail l "the item comes before the first piece";
@@ -336,6 +343,7 @@ let motion text variables bodies =
     | "until" -> set until (fraction l)
     | "piece" ->
         values := Array.make variables [] :: !values;
+        turned := ref [] :: !turned;
         left_out := ref [] :: !left_out
     | "q" -> (
         match !values with
@@ -354,7 +362,16 @@ let motion text variables bodies =
             let b = integer l bodies in
             if a >= b then fail l "of an ignored pair the lower number comes first";
             list := ((a, b), fraction l) :: !list)
-    | "orientation" -> scope l "orientation"
+    | "orientation" -> (
+        match !turned with
+        | [] -> fail l "a 'piece' comes first"
+        | list :: _ ->
+            let v = integer l variables in
+            let a = three l number in
+            let b = three l number in
+            let c = three l number in
+            if List.mem_assoc v !list then fail l "a piece states a variable twice";
+            list := (v, ((a, b), c)) :: !list)
     | kind -> fail l ("there is no item '" ^ kind ^ "'"));
     last l
   done;
@@ -362,9 +379,8 @@ let motion text variables bodies =
   let zero = { mantissa = Z.zero; exponent = Z.zero } in
   let reach = need "scope" reach in
   if !values = [] then fail l "there is no piece";
-  let pieces =
-    List.rev (List.map2 (fun q i -> { polynomials = Array.to_list q; ignored = !i }) !values !left_out)
-  in
+  let piece q (r, i) = { polynomials = Array.to_list q; orientations = !r; ignored = !i } in
+  let pieces = List.rev (List.map2 piece !values (List.combine !turned !left_out)) in
   ( { general_margin = need "margin" margin; added_margin = Option.value !added ~default:zero;
       scope_self = List.mem "self" reach; scope_scene = List.mem "scene" reach; until = need "until" until; pieces },
     need "world" world )
