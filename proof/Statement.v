@@ -70,12 +70,16 @@ Inductive role := link | carried | obstacle.
 Record body := Body {
   body_role : role; body_name : string; body_frame : nat; body_place : stated_pose; body_geometry : geometry }.
 
+(** Pairs that are not checked, by names, and why. *)
+Inductive reason := still | neighbours | allowed | touch_link.
+Record unchecked_pair := Unchecked { why : reason; one_name : string; other_name : string }.
+
 Record world := World {
   frames : list frame;
   bodies : list body;
   margins : list (string * number);
   pair_margins : list (string * string * number);
-  unchecked : list (string * string) }.                   (* names of pairs that are not checked *)
+  unchecked : list unchecked_pair }.
 
 (** A piece has a polynomial for each variable, by its coefficients of 1, t, t^2, ...; the nine numbers of rotations with
     which `Rotate` of a variable begins; and pairs of bodies, the lower number first, that are ignored up to a time. *)
@@ -196,7 +200,7 @@ Definition same_names (x y a b : string) :=
 Definition checked (w : world) (m : motion) (a b : body) : bool :=
   negb (Nat.eqb (body_frame a) (body_frame b)) &&
   negb (is_obstacle a && is_obstacle b) &&
-  negb (existsb (fun u => same_names (fst u) (snd u) (body_name a) (body_name b)) (unchecked w)) &&
+  negb (existsb (fun u => same_names (one_name u) (other_name u) (body_name a) (body_name b)) (unchecked w)) &&
   (if is_obstacle a || is_obstacle b then scope_scene m else scope_self m).
 
 Definition own_margin (w : world) (a : body) : option number :=
@@ -214,6 +218,53 @@ Definition margin (w : world) (m : motion) (a b : body) : R :=
   | None, Some x, None => real x
   | None, None, Some y => real y
   | None, None, None => real (general_margin m)
+  end.
+
+(** ** Reasons
+
+    Of the reasons for which a pair is not checked, these are claims. *)
+Definition frame_at (w : world) (i : nat) : option frame := match i with O => None | S k => nth_error (frames w) k end.
+Definition elements_at (w : world) (i : nat) : list element :=
+  match frame_at w i with Some f => elements f | None => [] end.
+
+(** The frames from i up to its ancestor c, without c. *)
+Inductive way_up (w : world) : nat -> nat -> list nat -> Prop :=
+  | arrived c : way_up w c c []
+  | one_up i f c l : frame_at w i = Some f -> way_up w (parent f) c l -> way_up w i c (i :: l).
+
+(** [l] has the frames between those of a and b that a common ancestor c does not carry along. *)
+Definition between_frames (w : world) (a b : body) (c : nat) (l : list nat) : Prop :=
+  exists up down, way_up w (body_frame a) c up /\ way_up w (body_frame b) c down /\ l = up ++ down.
+
+Definition moves (w : world) (i : nat) : bool := match elements_at w i with [] => false | _ => true end.
+
+(** Whether elements move freely: they slide by two variables, or rotate after they slid. [slid]: by which variables. *)
+Fixpoint free (slid : list nat) (es : list element) : bool :=
+  match es with
+  | [] => false
+  | Turn _ _ _ _ :: rest => free slid rest
+  | Slide _ v _ _ :: rest => existsb (fun u => negb (Nat.eqb u v)) slid || free (v :: slid) rest
+  | Rotate _ :: rest => match slid with [] => free slid rest | _ => true end
+  end.
+
+Definition is_link (b : body) : Prop := body_role b = link.
+
+Definition reason_holds (w : world) (why : reason) (a b : body) : Prop :=
+  match why with
+  | allowed => True                                       (* the user's word *)
+  | touch_link =>
+      body_role a <> obstacle /\ body_role b <> obstacle /\ (body_role a = carried \/ body_role b = carried)
+  | still => exists c l, between_frames w a b c l /\ forall i, In i l -> moves w i = false
+  | neighbours =>
+      is_link a /\ is_link b /\
+      exists c l, between_frames w a b c l /\
+        (length (filter (moves w) l) <= 1)%nat /\
+        (* no frame between them carries a link *)
+        (forall i d, In i (c :: l) -> i <> body_frame a -> i <> body_frame b ->
+           In d (bodies w) -> is_link d -> body_frame d <> i) /\
+        (* what moves freely there stands on what moves *)
+        (forall i f, In i l -> frame_at w i = Some f -> free [] (elements f) = true ->
+           exists k up, way_up w (parent f) k up /\ moves w k = true)
   end.
 
 (** ** The claim *)
@@ -248,8 +299,14 @@ Definition joined (w : world) (p p' : piece) : Prop :=
       near (/ 2 ^ 27) (way (fun x => O (M x)) axis) (way (fun x => O (M' x)) axis)
   end.
 
+(** Each pair that is listed as unchecked has the reason that is given. *)
+Definition reasons (w : world) : Prop :=
+  forall a b u, In a (bodies w) -> In b (bodies w) -> In u (unchecked w) ->
+  body_frame a <> body_frame b -> is_obstacle a && is_obstacle b = false ->
+  same_names (one_name u) (other_name u) (body_name a) (body_name b) = true -> reason_holds w (why u) a b.
+
 Definition claim (w : world) (m : motion) : Prop :=
-  meaningful w m /\
+  meaningful w m /\ reasons w /\
   (forall k p p', nth_error (pieces m) k = Some p -> nth_error (pieces m) (S k) = Some p' -> joined w p p') /\
   forall k p, nth_error (pieces m) k = Some p ->
   forall i j a b, (i < j)%nat -> nth_error (bodies w) i = Some a -> nth_error (bodies w) j = Some b ->

@@ -4,7 +4,7 @@
     As verify/proof.cpp: a node is about a task, that is pieces of a body A, a list of partners and an interval of time;
     TIME, PARTNERS, OWN and OTHER cut their task in two parts that cover it. *)
 From Coq Require Import Reals ZArith Lia Lra String Bool List.
-From FclArtic Require Import Statement Numbers Trig Frames Enclose Meaning Leaf.
+From FclArtic Require Import Statement Numbers Trig Frames Enclose Meaning Reasons Leaf.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -160,7 +160,7 @@ Definition is_meaningful (w : world) (m : motion) : bool :=
   forallb frame_means (frames w) && forallb piece_means (pieces m) && forallb (fun b => has_rotation (body_place b)) (bodies w).
 
 Definition accepts (w : world) (m : motion) (nodes : list node) : bool :=
-  is_well_formed w && is_meaningful w m && pieces_join w (pieces m) &&
+  is_well_formed w && is_meaningful w m && reasons_ok w && pieces_join w (pieces m) &&
   match check_pieces w m (map sframe_of (frames w)) (prepare_all 0 (bodies w)) (pieces m) nodes with
   | Some [] => true
   | _ => false
@@ -420,15 +420,16 @@ Qed.
 
 Theorem accepts_sound w m nodes : accepts w m nodes = true -> claim w m.
 Proof.
-  unfold accepts. rewrite !andb_true_iff. intros [[[HW HM] HJ] H].
+  unfold accepts. rewrite !andb_true_iff. intros [[[[HW HM] HR] HJ] H].
   assert (WF : well_formed w).
   { apply andb_true_iff in HW. destruct HW as [H1 H2]. split.
     - intros i f N. exact (parents_ok_spec _ 0 H1 i f N).
     - intros b I. rewrite forallb_forall in H2. apply Nat.leb_le, H2, I. }
-  split; [|split].
+  split.
   { unfold is_meaningful in HM. rewrite !andb_true_iff in HM. destruct HM as [[M1 M3] M2]. split.
     - intros p t I. rewrite forallb_forall in M3. apply frames_exist; [apply piece_means_ok, M3, I | apply WF | exact M1].
     - intros b I. rewrite forallb_forall in M2. apply has_rotation_ok, M2, I. }
+  split; [apply reasons_ok_ok; exact HR|]. split.
   { apply pieces_join_ok. exact HJ. }
   intros k p Np i j a b Hij Na Nb C t Ht HI.
   destruct (check_pieces w m (map sframe_of (frames w)) (prepare_all 0 (bodies w)) (pieces m) nodes) as [left|] eqn:K;

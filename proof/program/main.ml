@@ -14,6 +14,13 @@ let pairs w m =
   Array.iteri (fun j b -> for i = 0 to j - 1 do if checked w m bodies.(i) b then incr count done) bodies;
   !count
 
+(* Which part of the claim is not shown. *)
+let fault w m =
+  if not (is_meaningful w m) then "no rotation is near the nine numbers of some pose"
+  else if not (reasons_ok w) then "some pair that is unchecked has not the reason that the world gives"
+  else if not (pieces_join w m.pieces) then "the motion jumps between two pieces"
+  else "some pair is not shown to be apart"
+
 let usage = "usage: fcl_artic_prove [--quiet] [--times] WORLD CERTIFICATES..."
 
 (* Exit: 0 all are proven, 1 some are not, 2 an input is bad or out of scope. *)
@@ -55,7 +62,7 @@ let () =
                       Printf.printf "%sproven, %d pairs%s\n" where n
                         (if contact then "; that bodies meet later is not looked at" else "")
                   end
-                  else note 1 (where ^ "not proven: some pair is not shown to be apart")
+                  else note 1 (where ^ "not proven: " ^ fault w m)
                 end
               with
              | Read.Bad_input why -> note 2 (where ^ "bad input: " ^ why)

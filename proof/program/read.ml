@@ -292,18 +292,23 @@ let world text =
         end;
         last l
     | "unchecked" ->
-        let reason = word l in
-        if not (List.mem reason [ "still"; "neighbours"; "allowed"; "touch-link" ]) then
-          fail l "the reason is still, neighbours, allowed or touch-link";
+        let why =
+          match word l with
+          | "still" -> Still
+          | "neighbours" -> Neighbours
+          | "allowed" -> Allowed
+          | "touch-link" -> Touch_link
+          | _ -> fail l "the reason is still, neighbours, allowed or touch-link"
+        in
         let a = name l in
         let b = name l in
         last l;
-        if List.exists (fun (_, p) -> same a b p) !unchecked then fail l "the pair is listed already";
-        unchecked := (reason, (a, b)) :: !unchecked
+        if List.exists (fun u -> same a b (u.one_name, u.other_name)) !unchecked then fail l "the pair is listed already";
+        unchecked := { why; one_name = a; other_name = b } :: !unchecked
     | kind -> fail l ("there is no item '" ^ kind ^ "'")
   done;
   ( { frames = List.rev !frames; bodies = List.rev !bodies; margins = !margins; pair_margins = !pair_margins;
-      unchecked = List.map snd !unchecked },
+      unchecked = !unchecked },
     !variables )
 
 (* ---- The motion ---- *)
