@@ -42,6 +42,8 @@ let start text file first =
   l
 
 let word l = match l.words with [] -> fail l "a word is missing" | w :: rest -> l.words <- rest; w
+(* A count of lines to come, of at least [shortest] bytes each. *)
+let most_lines = 200 lsl 20
 let last l = if l.words <> [] then fail l "there are too many words"
 
 let integer l below =
@@ -140,19 +142,27 @@ let three l f =
   let n3 = f l in
   { n1; n2; n3 }
 
-let pose l =
+(* Nine numbers near a rotation. *)
+let rotation l =
   let r1 = three l number in
   let r2 = three l number in
   let r3 = three l number in
+  if not (has_rotation { r1; r2; r3; shift = nothing }) then
+    fail l "the nine numbers are not known to be within 2^-49 of a rotation's";
+  (r1, r2, r3)
+
+let pose l =
+  let r1, r2, r3 = rotation l in
   let shift = three l number in
   { r1; r2; r3; shift }
 
 (* ---- The world ---- *)
 
-let rows l what row =
+let rows l what shortest row =
   if not (next l && word l = what) then fail l ("'" ^ what ^ "' is missing");
-  let n = integer l 1_000_000_000 in
+  let n = integer l most_lines in
   if n = 0 then fail l "the count is 0";
+  if n > (String.length l.text - l.at) / shortest then fail l "the text has fewer lines than the count says";
   last l;
   List.init n (fun _ ->
       if not (next l) then fail l "a line is missing";
@@ -168,7 +178,7 @@ let geometry l =
       | "solid" -> scope l "mesh solid"
       | _ -> fail l "a mesh is 'surface' or 'solid'");
       last l;
-      let vertices = Array.of_list (rows l "vertices" (fun l -> three l number)) in
+      let vertices = Array.of_list (rows l "vertices" 12 (fun l -> three l number)) in
       let used = Array.make (Array.length vertices) false in
       let corner l =
         let k = integer l (Array.length vertices) in
@@ -176,7 +186,7 @@ let geometry l =
         vertices.(k)
       in
       let triangles =
-        rows l "triangles" (fun l ->
+        rows l "triangles" 6 (fun l ->
             let a = corner l in
             let b = corner l in
             let c = corner l in
@@ -187,13 +197,13 @@ let geometry l =
   | "boxes" ->
       last l;
       Boxes
-        (rows l "cells" (fun l ->
+        (rows l "cells" 24 (fun l ->
              let centre = three l number in
              let half = three l not_negative in
              (centre, half)))
   | "hull" ->
       last l;
-      Hull (rows l "vertices" (fun l -> three l number))
+      Hull (rows l "vertices" 12 (fun l -> three l number))
   | "box" ->
       let sizes = three l not_negative in
       last l;
@@ -225,9 +235,38 @@ let geometry l =
       if kind = "plane" then Plane (normal, offset) else Halfspace (normal, offset)
   | kind -> fail l ("there is no geometry '" ^ kind ^ "'")
 
+(* A world, and what motions are read by. *)
+type known = { w : world; body : body array; moved : bool array; turned : bool array }
+
+let most_pairs = 20_000_000
+
+(* Refuses lines without a meaning: whoever wrote them meant something else. *)
+let refuse_unused l w geometries used =
+  let named = Hashtbl.create 64 in
+  List.iter (fun b -> Hashtbl.add named b.body_name b) w.bodies;
+  let there what name = if not (Hashtbl.mem named name) then fail l (what ^ " names '" ^ name ^ "': no body is called so") in
+  List.iter (fun (a, _) -> there "'margin'" a) w.margins;
+  List.iter (fun ((a, b), _) -> there "'margin'" a; there "'margin'" b) w.pair_margins;
+  List.iter (fun u -> there "'unchecked'" u.one_name; there "'unchecked'" u.other_name) w.unchecked;
+  for k = 0 to geometries - 1 do
+    if not used.(k) then fail l (Printf.sprintf "no body has the geometry %d" k)
+  done;
+  List.iter
+    (fun u ->
+      let others = Hashtbl.find_all named u.other_name in
+      let pair a b = a.body_frame <> b.body_frame && not (a.body_role = Obstacle && b.body_role = Obstacle) in
+      if not (List.exists (fun a -> List.exists (pair a) others) (Hashtbl.find_all named u.one_name)) then
+        fail l
+          (Printf.sprintf "'unchecked' of '%s' and '%s': no two bodies of these names would be checked" u.one_name u.other_name))
+    w.unchecked;
+  let all = List.length w.bodies and obstacles = List.length (List.filter (fun b -> b.body_role = Obstacle) w.bodies) in
+  if ((all * (all - 1)) - (obstacles * (obstacles - 1))) / 2 > most_pairs then
+    fail l "there are more than 20 million pairs to look at"
+
 let world text =
   let l = start text "world" "fcl_artic world 1" in
   let variables = ref 0 and frames = ref [] and frame_count = ref 1 and geometries = ref [||] and bodies = ref [] in
+  let depths = ref [| 0 |] and used = ref [||] in
   let margins = ref [] and pair_margins = ref [] and unchecked = ref [] in
   let same a b (c, d) = (a = c && b = d) || (a = d && b = c) in
   while next l do
@@ -239,6 +278,9 @@ let world text =
     | "frame" ->
         ignore (name l);
         let parent = integer l !frame_count in
+        if !frame_count >= Array.length !depths then depths := Array.append !depths (Array.make !frame_count 0);
+        !depths.(!frame_count) <- !depths.(parent) + 1;
+        if !depths.(parent) >= 1000 then fail l "a chain of more than 1000 frames is not read";
         let origin = pose l in
         last l;
         frames := { parent; origin; elements = [] } :: !frames;
@@ -264,7 +306,9 @@ let world text =
             if v + 2 >= !variables then fail l "'rotate' takes three variables";
             last l;
             frames := { f with elements = f.elements @ [ Rotate v ] } :: rest)
-    | "geometry" -> geometries := Array.append !geometries [| geometry l |]
+    | "geometry" ->
+        geometries := Array.append !geometries [| geometry l |];
+        used := Array.append !used [| false |]
     | "body" ->
         let body_role =
           match word l with
@@ -275,7 +319,9 @@ let world text =
         in
         let body_name = name l in
         let body_frame = integer l !frame_count in
-        let body_geometry = !geometries.(integer l (Array.length !geometries)) in
+        let number = integer l (Array.length !geometries) in
+        !used.(number) <- true;
+        let body_geometry = !geometries.(number) in
         let body_place = pose l in
         last l;
         bodies := { body_role; body_name; body_frame; body_place; body_geometry } :: !bodies
@@ -307,9 +353,20 @@ let world text =
         unchecked := { why; one_name = a; other_name = b } :: !unchecked
     | kind -> fail l ("there is no item '" ^ kind ^ "'")
   done;
-  ( { frames = List.rev !frames; bodies = List.rev !bodies; margins = !margins; pair_margins = !pair_margins;
-      unchecked = !unchecked },
-    !variables )
+  let w =
+    { frames = List.rev !frames; bodies = List.rev !bodies; margins = !margins; pair_margins = !pair_margins;
+      unchecked = !unchecked }
+  in
+  refuse_unused l w (Array.length !geometries) !used;
+  let moved = Array.make !variables false and turned = Array.make !variables false in
+  let element = function
+    | Turn (_, v, _, _) | Slide (_, v, _, _) -> moved.(v) <- true
+    | Rotate v ->
+        Array.fill moved v 3 true;
+        turned.(v) <- true
+  in
+  List.iter (fun f -> List.iter element f.elements) w.frames;
+  { w; body = Array.of_list w.bodies; moved; turned }
 
 (* ---- The motion ---- *)
 
@@ -322,11 +379,19 @@ let fraction l =
   x
 
 (* The motion and the hash of its world. *)
-let motion text variables bodies =
+let motion text known =
+  let variables = Array.length known.moved and bodies = Array.length known.body in
   let l = start text "motion" "fcl_artic motion 1" in
   let world = ref None and margin = ref None and added = ref None and reach = ref None in
   let duration = ref None and until = ref None in
   let values = ref [] and turned = ref [] and left_out = ref [] in  (* of each piece, the last one first *)
+  (* A motion of the scope that is read so far. *)
+  let zero = { mantissa = Z.zero; exponent = Z.zero } in
+  let scoped () =
+    let words = Option.value !reach ~default:[] in
+    { general_margin = zero; added_margin = zero; scope_self = List.mem "self" words; scope_scene = List.mem "scene" words;
+      until = zero; pieces = [] }
+  in
   let set item value =
     if !item <> None then fail l "the item is there already";
     if !values <> [] then fail l "the item comes before the first piece";
@@ -355,6 +420,7 @@ let motion text variables bodies =
         | [] -> fail l "a 'piece' comes first"
         | piece :: _ ->
             let v = integer l variables in
+            if not known.moved.(v) then fail l "the variable moves nothing";
             if piece.(v) <> [] then fail l "a piece states a variable twice";
             let n = List.length l.words in
             if n < 1 || n > 6 then fail l "a polynomial has 1 to 6 coefficients";
@@ -366,22 +432,21 @@ let motion text variables bodies =
             let a = integer l bodies in
             let b = integer l bodies in
             if a >= b then fail l "of an ignored pair the lower number comes first";
+            if not (checked known.w (scoped ()) known.body.(a) known.body.(b)) then fail l "the pair is not checked anyway";
             list := ((a, b), fraction l) :: !list)
     | "orientation" -> (
         match !turned with
         | [] -> fail l "a 'piece' comes first"
         | list :: _ ->
             let v = integer l variables in
-            let a = three l number in
-            let b = three l number in
-            let c = three l number in
+            let a, b, c = rotation l in
+            if not known.turned.(v) then fail l "the variable is not that of a 'rotate'";
             if List.mem_assoc v !list then fail l "a piece states a variable twice";
             list := (v, ((a, b), c)) :: !list)
     | kind -> fail l ("there is no item '" ^ kind ^ "'"));
     last l
   done;
   let need what item = match !item with Some x -> x | None -> fail l (what ^ " is missing") in
-  let zero = { mantissa = Z.zero; exponent = Z.zero } in
   let reach = need "scope" reach in
   if !values = [] then fail l "there is no piece";
   let piece q (r, i) = { polynomials = Array.to_list q; orientations = !r; ignored = !i } in
@@ -428,7 +493,9 @@ let records file =
   let rec go acc =
     if b.pos = String.length file then List.rev acc
     else begin
-      if take b 4 <> "FAC2" then raise (Bad_input "a record does not begin with FAC2");
+      let version = take b 4 in
+      if version = "FAC1" then raise (Bad_input "a record is of format 1, which is not read here: ask for it anew");
+      if version <> "FAC2" then raise (Bad_input "a record does not begin with FAC2");
       let motion = take b (little b 4) in
       let proof = take b (little b 4) in
       go ((motion, proof) :: acc)
@@ -436,13 +503,14 @@ let records file =
   in
   go []
 
-let rec node b depth =
+let rec node b depth times =
   if depth > 400 then raise (Bad_input "the proof is more than 400 nodes deep");
-  let two f =
-    let first = node b (depth + 1) in
-    let second = node b (depth + 1) in
+  let cut times f =
+    let first = node b (depth + 1) times in
+    let second = node b (depth + 1) times in
     f first second
   in
+  let two f = cut times f in
   match byte b with
   | k when k < 6 ->
       let n = if k < 3 then 2 else 4 in
@@ -453,7 +521,9 @@ let rec node b depth =
       Sep ((match k mod 3 with 0 -> InWorld | 1 -> InOwn | _ -> InPartners), x, y, z)
   | 0x09 -> AtWall false
   | 0x0a -> AtWall true
-  | 0x10 -> two (fun l r -> Time (l, r))
+  | 0x10 ->
+      if times = 60 then raise (Bad_input "time is cut more than 60 times");
+      cut (times + 1) (fun l r -> Time (l, r))
   | 0x11 ->
       let c = varint b in
       two (fun l r -> Partners (c, l, r))
@@ -474,6 +544,6 @@ let proof data =
   let rec go acc =
     if b.pos = String.length data then (hash, List.rev acc, false)
     else if data.[b.pos] = '\x20' then (hash, List.rev acc, true)
-    else go (node b 0 :: acc)
+    else go (node b 0 0 :: acc)
   in
   go []
