@@ -411,15 +411,15 @@ Qed.
 Record sframe := Sframe { sparent : nat; sorigin : step; selements : list selement }.
 Definition sframe_of (f : frame) : sframe := Sframe (parent f) (placed (origin f)) (map selement_of (elements f)).
 
-Definition tree_at (fs : list sframe) (p : spiece) (a b : Z) : tree :=
-  let x := state_at p (time_tm a b) in
+Definition tree_of (fs : list sframe) (x : sstate) : tree :=
   map (fun f => (sparent f, sorigin f :: flat_map (steps_of x) (selements f))) fs.
+Definition tree_at (fs : list sframe) (p : spiece) (a b : Z) : tree := tree_of fs (state_at p (time_tm a b)).
 
-Lemma tree_ok w p a b t s P : Rabs s <= 1 -> holds (time_tm a b) s t -> frames_at w (at_time p t) P ->
-  forall i k sts, nth_error (tree_at (map sframe_of (frames w)) (spiece_of p) a b) i = Some (k, sts) ->
+Lemma tree_ok w p tmodel t s P : Rabs s <= 1 -> holds tmodel s t -> frames_at w (at_time p t) P ->
+  forall i k sts, nth_error (tree_of (map sframe_of (frames w)) (state_at (spiece_of p) tmodel)) i = Some (k, sts) ->
   exists E, holds_steps s sts E /\ forall x, P (S i) x = P k (E x).
 Proof.
-  intros Hs Ht [_ F] i k sts. unfold tree_at. rewrite map_map.
+  intros Hs Ht [_ F] i k sts. unfold tree_of. rewrite map_map.
   rewrite nth_error_map. destruct (nth_error (frames w) i) as [f|] eqn:N; [|discriminate]. cbn.
   intros [= <- <-]. destruct (F i f N) as (O & M & HO & HM & X). exists (fun x => O (M x)). split.
   - apply first_step with (E := O) (M := M); [apply placed_ok; exact HO | | reflexivity].

@@ -620,11 +620,11 @@ Let q := spiece_of pc.
 
 Lemma tree_parents a b k p sts : nth_error (tree_at sfs q a b) k = Some (p, sts) -> (p <= k)%nat.
 Proof.
-  unfold tree_at, sfs. rewrite map_map, nth_error_map. destruct (nth_error (frames w) k) as [f|] eqn:N; [|discriminate].
+  unfold tree_at, tree_of, sfs. rewrite map_map, nth_error_map. destruct (nth_error (frames w) k) as [f|] eqn:N; [|discriminate].
   cbn. intros [= <- _]. apply (proj1 WF). exact N.
 Qed.
 Lemma tree_length a b : length (tree_at sfs q a b) = length (frames w).
-Proof. unfold tree_at, sfs. rewrite !map_length. reflexivity. Qed.
+Proof. unfold tree_at, tree_of, sfs. rewrite !map_length. reflexivity. Qed.
 
 Lemma not_shown_ok A os n ps a b t P p : (l_frame n <= length (frames w))%nat -> line_ok n A os p ->
   V a <= t <= V b -> frames_at w (at_time pc t) P -> In p ps ->
@@ -640,7 +640,7 @@ Proof.
   destruct (time_ok a b t Ht) as (s & Hs & Hts).
   specialize (HF s). specialize (HG s). specialize (Co s). specialize (Co' s).
   assert (CH : forall i k sts, nth_error fs i = Some (k, sts) ->
-    exists E, holds_steps s sts E /\ forall x, P (S i) x = P k (E x)) by (apply tree_ok with t; assumption).
+    exists E, holds_steps s sts E /\ forall x, P (S i) x = P k (E x)) by (eapply tree_ok; eassumption).
   destruct (LO s F G Hs HF HG) as (n0 & d0 & Hn0 & SIDE).
   destruct (chain_ok s Hs fs P (proj1 HP) CH (length fs) (l_frame n) (l_func n) n0 d0) as (wv & e & Nw & Xw & K).
   - intros k p' sts. apply tree_parents.

@@ -299,6 +299,14 @@ Definition joined (w : world) (p p' : piece) : Prop :=
       near (/ 2 ^ 27) (way (fun x => O (M x)) axis) (way (fun x => O (M' x)) axis)
   end.
 
+(** Bodies i and j are checked at time t of piece k, and have a point in common there, wherever rotations and axes let
+    the frames stand. *)
+Definition meets (w : world) (m : motion) (k i j : nat) (t : number) : Prop :=
+  exists p a b, nth_error (pieces m) k = Some p /\ nth_error (bodies w) i = Some a /\ nth_error (bodies w) j = Some b /\
+  (i < j)%nat /\ checked w m a b = true /\ 0 <= real t <= 1 /\ (forall u, In (i, j, u) (ignored p) -> real u < real t) /\
+  forall P A B, frames_at w (at_time p (real t)) P -> pose_map (body_place a) A -> pose_map (body_place b) B ->
+  exists x, occupies P a A x /\ occupies P b B x.
+
 (** Each pair that is listed as unchecked has the reason that is given. *)
 Definition reasons (w : world) : Prop :=
   forall a b u, In a (bodies w) -> In b (bodies w) -> In u (unchecked w) ->

@@ -4,7 +4,7 @@
     As verify/proof.cpp: a node is about a task, that is pieces of a body A, a list of partners and an interval of time;
     TIME, PARTNERS, OWN and OTHER cut their task in two parts that cover it. *)
 From Coq Require Import Reals ZArith Lia Lra String Bool List.
-From FclArtic Require Import Statement Numbers Trig Frames Enclose Meaning Reasons Leaf.
+From FclArtic Require Import Statement Numbers Trig Frames Enclose Meaning Reasons Leaf Witness.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -134,8 +134,6 @@ Definition value_joins (p p' : piece) (v : nat) (m : number) : bool :=
   Z.leb (bound (tm_sub x y)) (2 ^ 35 + Z.min (Z.shiftr (Z.abs (c0 x) - rem x) 39) (2 ^ 44)).
 
 (** The rows of a frame's rotation, each as what a coordinate of the parent is in the frame. *)
-Definition units : list tvec :=
-  [Tvec tm_one tm_zero tm_zero; Tvec tm_zero tm_one tm_zero; Tvec tm_zero tm_zero tm_one].
 Definition rows (f : frame) (p : piece) (t : Z) : list tvec :=
   let sts := placed (origin f) :: flat_map (steps_of (state_at (spiece_of p) (const t 0))) (map selement_of (elements f)) in
   map (fun n => fv (down_all sts (Func n tm_zero))) units.
@@ -418,17 +416,37 @@ Proof.
   - specialize (IH _ H2 k f N). lia.
 Qed.
 
+Lemma is_well_formed_ok w : is_well_formed w = true -> well_formed w.
+Proof.
+  intros H. apply andb_true_iff in H. destruct H as [H1 H2]. split.
+  - intros i f N. exact (parents_ok_spec _ 0 H1 i f N).
+  - intros b I. rewrite forallb_forall in H2. apply Nat.leb_le, H2, I.
+Qed.
+
+Lemma is_meaningful_ok w m : well_formed w -> is_meaningful w m = true -> meaningful w m.
+Proof.
+  intros WF HM. unfold is_meaningful in HM. rewrite !andb_true_iff in HM. destruct HM as [[M1 M3] M2]. split.
+  - intros p t I. rewrite forallb_forall in M3. apply frames_exist; [apply piece_means_ok, M3, I | apply WF | exact M1].
+  - intros b I. rewrite forallb_forall in M2. apply has_rotation_ok, M2, I.
+Qed.
+
+(** That two bodies meet in the end. *)
+Definition accepts_meeting (w : world) (m : motion) (k i j : nat) (t : number) (first : bool) (wt : witness) : bool :=
+  is_well_formed w && is_meaningful w m && meets_ok w m k i j t first wt.
+
+Theorem accepts_meeting_sound w m k i j t first wt : accepts_meeting w m k i j t first wt = true ->
+  meaningful w m /\ meets w m k i j t.
+Proof.
+  unfold accepts_meeting. rewrite !andb_true_iff. intros [[HW HM] H]. pose proof (is_well_formed_ok w HW) as WF.
+  split; [exact (is_meaningful_ok w m WF HM) | exact (meets_ok_sound w m k i j t first wt WF H)].
+Qed.
+
 Theorem accepts_sound w m nodes : accepts w m nodes = true -> claim w m.
 Proof.
   unfold accepts. rewrite !andb_true_iff. intros [[[[HW HM] HR] HJ] H].
-  assert (WF : well_formed w).
-  { apply andb_true_iff in HW. destruct HW as [H1 H2]. split.
-    - intros i f N. exact (parents_ok_spec _ 0 H1 i f N).
-    - intros b I. rewrite forallb_forall in H2. apply Nat.leb_le, H2, I. }
+  pose proof (is_well_formed_ok w HW) as WF.
   split.
-  { unfold is_meaningful in HM. rewrite !andb_true_iff in HM. destruct HM as [[M1 M3] M2]. split.
-    - intros p t I. rewrite forallb_forall in M3. apply frames_exist; [apply piece_means_ok, M3, I | apply WF | exact M1].
-    - intros b I. rewrite forallb_forall in M2. apply has_rotation_ok, M2, I. }
+  { exact (is_meaningful_ok w m WF HM). }
   split; [apply reasons_ok_ok; exact HR|]. split.
   { apply pieces_join_ok. exact HJ. }
   intros k p Np i j a b Hij Na Nb C t Ht HI.

@@ -45,7 +45,8 @@ let pairs w m =
     bodies;
   !count
 
-type verdict = Proven of int * string | Not_proven of string | Bad of string
+type later = Nothing | Meet of string | Near of string  (* what is shown, and what is not looked at *)
+type verdict = Proven of int * later | Not_proven of string | Bad of string
 
 (* Which part of the claim is not shown. *)
 let fault w m =
@@ -59,15 +60,26 @@ let verdict (known : Read.known) hash limit (motion, proof) =
   try
     Big.left := max_int;
     let m, of_world = Read.motion motion known in
-    let of_motion, roots, contact = Read.proof proof in
+    let of_motion, roots, contact = Read.proof proof known (List.length m.pieces) in
     Big.left := limit;
     if of_world <> hash then Not_proven "the motion is about another world"
     else if of_motion <> Sha256.of_string motion then Not_proven "the proof is about another motion"
     else
       let n = pairs w m in
       if n = 0 then Not_proven "nothing is checked: the claim is about no pair of bodies"
-      else if accepts w m roots then Proven (n, if contact then "that bodies meet later is not looked at" else "")
-      else Not_proven (fault w m)
+      else if not (accepts w m roots) then Not_proven (fault w m)
+      else
+        match contact with
+        | None -> Proven (n, Nothing)
+        | Some c -> (
+            let body k = Printf.sprintf "'%s' (body %d)" known.body.(k).body_name k in
+            let both = body c.lower ^ " and " ^ body c.upper in
+            match c.witness with
+            | None -> Proven (n, Near (both ^ " come within their margin"))
+            | Some x when accepts_meeting w m c.piece c.lower c.upper c.time c.of_lower x ->
+                let t = Z.to_float c.time.mantissa *. (2. ** Z.to_float c.time.exponent) in
+                Proven (n, Meet (Printf.sprintf "%s meet at t = %.17g of piece %d" both t c.piece))
+            | Some _ -> Not_proven ("the witness does not show that " ^ both ^ " meet"))
   with
   | Read.Bad_input why -> Bad ("bad input: " ^ why)
   | Read.Out_of_scope what -> Bad ("out of scope: " ^ what)
@@ -93,12 +105,15 @@ let shown text =
     (List.of_seq (String.to_seq text)))
 
 let as_json = function
-  | Proven (n, "") -> Printf.sprintf {|{"proven": true, "pairs": %d}|} n
-  | Proven (n, note) -> Printf.sprintf {|{"proven": true, "pairs": %d, "note": %s}|} n (quoted note)
+  | Proven (n, Nothing) -> Printf.sprintf {|{"proven": true, "pairs": %d}|} n
+  | Proven (n, Meet what) -> Printf.sprintf {|{"proven": true, "pairs": %d, "contact": %s}|} n (quoted what)
+  | Proven (n, Near what) -> Printf.sprintf {|{"proven": true, "pairs": %d, "not_looked_at": %s}|} n (quoted what)
   | Not_proven why | Bad why -> Printf.sprintf {|{"proven": false, "reason": %s}|} (quoted why)
 
 let as_text = function
-  | Proven (n, note) -> Printf.sprintf "proven, %d pairs%s" n (if note = "" then "" else "; " ^ note)
+  | Proven (n, Nothing) -> Printf.sprintf "proven, %d pairs" n
+  | Proven (n, Meet what) -> Printf.sprintf "proven, %d pairs; and that %s" n what
+  | Proven (n, Near what) -> Printf.sprintf "proven, %d pairs; that %s later is not looked at" n what
   | Not_proven why -> "not proven: " ^ why
   | Bad why -> why
 

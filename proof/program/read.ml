@@ -534,16 +534,103 @@ let rec node b depth times =
       let c = varint b in
       two (fun l r -> Other (c, l, r))
   | 0x14 -> raise (Out_of_scope "the proof: SOLID")
-  | 0x20 -> raise (Out_of_scope "the proof: a contact")
   | k -> raise (Bad_input (Printf.sprintf "there is no node of kind %d" k))
 
-(* The hash of the motion, the roots, and whether a contact comes after them, which is not looked at. *)
-let proof data =
+(* A double that is a number, of magnitude 2^40 at most. *)
+let double b =
+  let bits = String.get_int64_le (take b 8) 0 in
+  let field shift mask = Int64.to_int (Int64.logand (Int64.shift_right_logical bits shift) mask) in
+  let biased = field 52 0x7ffL and low = field 0 0xfffffffffffffL in
+  let mantissa = if biased = 0 then low else low lor (1 lsl 52) in
+  let exponent = max biased 1 - 1075 in
+  let bits_in_all = Z.numbits (Z.of_int mantissa) + exponent in
+  if bits_in_all > 41 || (bits_in_all = 41 && mantissa land (mantissa - 1) <> 0) then
+    raise (Bad_input "a witness has a number beyond 2^40");
+  { mantissa = Z.of_int (if Int64.compare bits 0L < 0 then - mantissa else mantissa); exponent = Z.of_int exponent }
+
+(* A contact: in a piece, at a time, of bodies [lower] < [upper]; the witness is about a point of the lower one if
+   [of_lower]. No witness: they only come within their margin, which is not looked at. *)
+type contact = { piece : int; lower : int; upper : int; time : number; of_lower : bool; witness : witness option }
+
+let pieces_of = function MeshSurface ts -> List.length ts | Boxes cells -> List.length cells | _ -> 1
+
+let below what b n =
+  let k = varint b in
+  if k >= n then raise (Bad_input ("a witness names " ^ what ^ " that is not there"));
+  k
+
+let place b g =
+  let piece = below "a piece" b (pieces_of g) in
+  let weights vertices =
+    let n = varint b in
+    if n = 0 || n > 16 then raise (Bad_input "a witness' point has 1 to 16 weights");
+    let list =
+      List.init n (fun _ ->
+          let vertex = below "a vertex" b vertices in
+          (vertex, Z.of_int (little b 4)))
+    in
+    if List.for_all (fun (_, x) -> Z.sign x = 0) list then raise (Bad_input "a witness' weights are all 0");
+    Mean (piece, list)
+  in
+  match g with
+  | MeshSurface _ -> weights 3
+  | Hull points -> weights (List.length points)
+  | _ ->
+      let n1 = double b in
+      let n2 = double b in
+      let n3 = double b in
+      Given (piece, { n1; n2; n3 })
+
+let contact b known pieces =
+  let piece = varint b in
+  let one = varint b in
+  let other = varint b in
+  let time = double b in
+  let bodies = Array.length known.body in
+  if piece >= pieces then raise (Bad_input "the contact is in a piece that is not there");
+  if one >= bodies || other >= bodies then raise (Bad_input "the contact's body is not there");
+  if Z.sign time.mantissa < 0 || Z.gt time.mantissa (Z.shift_left Z.one (max 0 (- (Z.to_int time.exponent)))) then
+    raise (Bad_input "the contact's time is not in [0, 1]");
+  let kind = byte b in
+  if kind > 4 then raise (Bad_input (Printf.sprintf "there is no witness of kind %d" kind));
+  let owner, holder = if kind land 1 = 1 then (other, one) else (one, other) in
+  let a = known.body.(owner).body_geometry and c = known.body.(holder).body_geometry in
+  let witness =
+    if kind <= 1 then begin
+      let triangle = varint b in
+      let edge = varint b in
+      let crossed = varint b in
+      match (a, c) with
+      | MeshSurface _, MeshSurface _ when triangle < pieces_of a && crossed < pieces_of c && edge <= 2 ->
+          Some (Cross (triangle, edge, crossed))
+      | _ -> raise (Bad_input "CROSS names a triangle or edge that is not there")
+    end
+    else if kind <= 3 then begin
+      let p = place b a in
+      let container = below "a piece" b (pieces_of c) in
+      let four = match c with Hull points -> List.init 4 (fun _ -> below "a vertex" b (List.length points)) | _ -> [] in
+      Some (Inside (p, container, four))
+    end
+    else begin
+      ignore (place b a);
+      ignore (place b c);
+      None
+    end
+  in
+  { piece; lower = min one other; upper = max one other; time; of_lower = owner <= holder; witness }
+
+(* The hash of the motion, the roots, and a contact that comes after them. *)
+let proof data known pieces =
   let b = { data; pos = 0 } in
   let hash = take b 32 in
   let rec go acc =
-    if b.pos = String.length data then (hash, List.rev acc, false)
-    else if data.[b.pos] = '\x20' then (hash, List.rev acc, true)
+    if b.pos = String.length data then (hash, List.rev acc, None)
+    else if data.[b.pos] = '\x20' then begin
+      ignore (byte b);
+      let c = contact b known pieces in
+      if b.pos < String.length data then raise (Bad_input "the proof has bytes after its end");
+      (hash, List.rev acc, Some c)
+    end
     else go (node b 0 0 :: acc)
   in
   go []
