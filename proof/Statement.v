@@ -300,12 +300,12 @@ Definition joined (w : world) (p p' : piece) : Prop :=
   end.
 
 (** Bodies i and j are checked at time t of piece k, and have a point in common there, wherever rotations and axes let
-    the frames stand. *)
-Definition meets (w : world) (m : motion) (k i j : nat) (t : number) : Prop :=
+    the frames stand; or, if only [near], points that are no farther from each other than the margin. *)
+Definition meets (w : world) (m : motion) (near : bool) (k i j : nat) (t : number) : Prop :=
   exists p a b, nth_error (pieces m) k = Some p /\ nth_error (bodies w) i = Some a /\ nth_error (bodies w) j = Some b /\
   (i < j)%nat /\ checked w m a b = true /\ 0 <= real t <= 1 /\ (forall u, In (i, j, u) (ignored p) -> real u < real t) /\
   forall P A B, frames_at w (at_time p (real t)) P -> pose_map (body_place a) A -> pose_map (body_place b) B ->
-  exists x, occupies P a A x /\ occupies P b B x.
+  exists x y, occupies P a A x /\ occupies P b B y /\ if near then norm (sub x y) <= margin w m a b else x = y.
 
 (** Each pair that is listed as unchecked has the reason that is given. *)
 Definition reasons (w : world) : Prop :=

@@ -435,7 +435,7 @@ Definition accepts_meeting (w : world) (m : motion) (k i j : nat) (t : number) (
   is_well_formed w && is_meaningful w m && meets_ok w m k i j t first wt.
 
 Theorem accepts_meeting_sound w m k i j t first wt : accepts_meeting w m k i j t first wt = true ->
-  meaningful w m /\ meets w m k i j t.
+  meaningful w m /\ meets w m (only_near wt) k i j t.
 Proof.
   unfold accepts_meeting. rewrite !andb_true_iff. intros [[HW HM] H]. pose proof (is_well_formed_ok w HW) as WF.
   split; [exact (is_meaningful_ok w m WF HM) | exact (meets_ok_sound w m k i j t first wt WF H)].

@@ -40,6 +40,32 @@ Proof.
   destruct (step_onto s st E HS y) as [z <-]. destruct (IH z) as [x <-]. exists x. apply HN.
 Qed.
 
+(** Distances stay what they are. *)
+Lemma norm_kept a b : dot a a = dot b b -> norm a = norm b.
+Proof. intros E. unfold norm. rewrite E. reflexivity. Qed.
+
+Lemma step_keeps s st E x y : holds_step s st E -> norm (sub (E x) (E y)) = norm (sub x y).
+Proof.
+  intros [km snm csm k sn cs F Hk Hsn Hcs K S HF | km wm k way F Hk Hw HF | um cm u c F Hu Hc K HF
+         | a b c pm m p F Ha Hb Hc Hp R HF]; rewrite !HF.
+  - replace (sub (turned k sn cs x) (turned k sn cs y)) with (turned k sn cs (sub x y)).
+    + apply norm_kept, turned_keeps_dot; assumption.
+    + destruct k as [k1 k2 k3], x as [x1 x2 x3], y as [y1 y2 y3]. unfold turned, sub, add, scale, cross, dot; cbn [vx vy vz]. f_equal; ring.
+  - f_equal. destruct x as [x1 x2 x3], y as [y1 y2 y3]. unfold sub, add, scale; cbn [vx vy vz]. f_equal; ring.
+  - replace (sub (spun u c x) (spun u c y)) with (spun u c (sub x y)).
+    + apply norm_kept, spun_keeps_dot. exact K.
+    + destruct u as [k1 k2 k3], x as [x1 x2 x3], y as [y1 y2 y3]. unfold spun, sub, add, scale, cross, dot; cbn [vx vy vz]. f_equal; ring.
+  - replace (sub (add (apply m x) p) (add (apply m y) p)) with (apply m (sub x y)).
+    + apply norm_kept, rotation_keeps_dot. exact R.
+    + destruct p as [p1 p2 p3], x as [x1 x2 x3], y as [y1 y2 y3]. unfold apply, sub, add, scale, dot; cbn [vx vy vz]. f_equal; ring.
+Qed.
+
+Lemma steps_keep s sts E : holds_steps s sts E -> forall x y, norm (sub (E x) (E y)) = norm (sub x y).
+Proof.
+  induction 1 as [E HE | st sts E M N HS HM IH HN]; intros x y; [rewrite !HE; reflexivity|].
+  rewrite !HN, (step_keeps s st E _ _ HS). apply IH.
+Qed.
+
 (** ** Numbers that are certain *)
 
 Definition low (m : tm) : Z := (c0 m - rem m)%Z.
@@ -471,7 +497,10 @@ Inductive place_of :=
 
 Inductive witness :=
   | Cross (piece edge crossed : nat)                      (* an edge of the one's triangle, a triangle of the other *)
-  | Inside (p : place_of) (container : nat) (four : list nat).
+  | Inside (p : place_of) (container : nat) (four : list nat)
+  | Near (p q : place_of).                                (* points of the one and the other *)
+
+Definition only_near (x : witness) : bool := match x with Near _ _ => true | _ => false end.
 
 Definition point_of (g : geometry) (p : place_of) : option tvec :=
   match p with
@@ -505,7 +534,7 @@ Definition edge_of {T} (edge : nat) (a b c : T) : T * T :=
   match edge with O => (a, b) | 1%nat => (b, c) | _ => (c, a) end.
 
 (** Whether the witness shows that A and B meet, where [row] takes a coordinate of B to A. *)
-Definition shows (A B : geometry) (rx ry rz : func) (x : witness) : bool :=
+Definition shows (A B : geometry) (rx ry rz : func) (margin : Z) (x : witness) : bool :=
   let take p := Tvec (on rx p) (on ry p) (on rz p) in
   match x with
   | Cross piece edge crossed =>
@@ -517,14 +546,40 @@ Definition shows (A B : geometry) (rx ry rz : func) (x : witness) : bool :=
       end
   | Inside p container four =>
       match point_of A p with Some m => in_shape B container four (take m) | None => false end
+  | Near p q =>
+      match point_of A p, point_of B q with
+      | Some m, Some n =>
+          let d := tsub (take m) n in squares (size (tx d)) (size (ty d)) (size (tz d)) margin
+      | _, _ => false
+      end
   end.
 
 Definition sbody_of (b : body) : sbody := Sbody (body_frame b) (placed (body_place b)).
 
-Definition meet_at (sfs : list sframe) (x : sstate) (a b : body) (wt : witness) : bool :=
+Definition margin_down (w : world) (m : motion) (a b : body) : Z :=
+  (number_down (added_margin m) +
+   match pair_margin w a b, own_margin w a, own_margin w b with
+   | Some x, _, _ => number_down x
+   | None, Some x, Some y => Z.max (number_down x) (number_down y)
+   | None, Some x, None => number_down x
+   | None, None, Some y => number_down y
+   | None, None, None => number_down (general_margin m)
+   end)%Z.
+
+Lemma margin_down_ok w m a b : V (margin_down w m a b) <= margin w m a b.
+Proof.
+  unfold margin, margin_down. rewrite V_add. apply Rplus_le_compat; [apply number_down_ok|].
+  destruct (pair_margin w a b); [apply number_down_ok|].
+  destruct (own_margin w a) as [x|], (own_margin w b) as [y|]; try apply number_down_ok.
+  pose proof (number_down_ok x). pose proof (number_down_ok y).
+  pose proof (Rmax_l (real x) (real y)). pose proof (Rmax_r (real x) (real y)).
+  destruct (Z.max_spec (number_down x) (number_down y)) as [[_ ->]|[_ ->]]; lra.
+Qed.
+
+Definition meet_at (sfs : list sframe) (x : sstate) (a b : body) (margin : Z) (wt : witness) : bool :=
   let fs := tree_of sfs x in
   match map (coordinate fs (sbody_of a) (sbody_of b)) units with
-  | [Some rx; Some ry; Some rz] => shows (body_geometry a) (body_geometry b) rx ry rz wt
+  | [Some rx; Some ry; Some rz] => shows (body_geometry a) (body_geometry b) rx ry rz margin wt
   | _ => false
   end.
 
@@ -537,7 +592,8 @@ Definition meets_ok (w : world) (m : motion) (k i j : nat) (t : number) (first :
                  negb (Nat.eqb g i && Nat.eqb h j) || Z.ltb (number_up u) (number_down t)) (ignored p) &&
       let sfs := map sframe_of (frames w) in
       let x := state_at (spiece_of p) (tm_number t) in
-      if first then meet_at sfs x a b wt else meet_at sfs x b a wt
+      let d := margin_down w m a b in
+      if first then meet_at sfs x a b d wt else meet_at sfs x b a d wt
   | _, _, _ => false
   end.
 
@@ -571,6 +627,17 @@ Proof.
     destruct (nth_error fs k) as [[p sts]|] eqn:N; [|apply nth_error_None in N; rewrite fs_length in N; lia].
     pose proof (parents_before _ _ _ N) as Hp. destruct (child_ok _ _ _ N) as (E & HE & X).
     destruct (IH p ltac:(lia) ltac:(lia) y) as [z <-]. destruct (steps_onto 0 sts E HE z) as [x <-]. exists x. apply X.
+Qed.
+
+Lemma frame_keeps n : forall i, (i <= n)%nat -> (i <= length (frames w))%nat -> forall x y,
+  norm (sub (P i x) (P i y)) = norm (sub x y).
+Proof.
+  induction n as [|n IH]; intros i Hi Hl x y.
+  - assert (i = O) as -> by lia. rewrite !(proj1 HP). reflexivity.
+  - destruct i as [|k]; [rewrite !(proj1 HP); reflexivity|].
+    destruct (nth_error fs k) as [[p sts]|] eqn:N; [|apply nth_error_None in N; rewrite fs_length in N; lia].
+    pose proof (parents_before _ _ _ N) as Hp. destruct (child_ok _ _ _ N) as (E & HE & X).
+    rewrite !X, (IH p) by lia. apply (steps_keep 0 sts E HE).
 Qed.
 
 Variables A B : sbody.
@@ -616,19 +683,20 @@ Proof.
 Qed.
 End Meets.
 
-Lemma meet_at_ok w pc t tmodel P a b F G wt : well_formed w -> (body_frame b <= length (frames w))%nat ->
+Lemma meet_at_ok w pc t tmodel P a b F G d wt : well_formed w -> (body_frame b <= length (frames w))%nat ->
   holds tmodel 0 t -> frames_at w (at_time pc t) P -> pose_map (body_place a) F -> pose_map (body_place b) G ->
-  meet_at (map sframe_of (frames w)) (state_at (spiece_of pc) tmodel) a b wt = true ->
-  exists x, occupies P a F x /\ occupies P b G x.
+  meet_at (map sframe_of (frames w)) (state_at (spiece_of pc) tmodel) a b d wt = true ->
+  exists x y, occupies P a F x /\ occupies P b G y /\ if only_near wt then norm (sub x y) <= V d else x = y.
 Proof.
   intros WF Hb Ht HP HF HG H. unfold meet_at in H.
   destruct (map _ units) as [|[rx|] [|[ry|] [|[rz|] [|]]]] eqn:R; try discriminate.
   destruct (taken_ok w WF pc t tmodel Ht P HP (sbody_of a) (sbody_of b) F G (placed_ok 0 _ _ HF) (placed_ok 0 _ _ HG) Hb rx ry rz R)
     as (M & HM & X & L). cbn [sbody_of sb_frame] in X.
   assert (MEET : forall x, inside (body_geometry a) x -> inside (body_geometry b) (M x) ->
-    exists y, occupies P a F y /\ occupies P b G y).
-  { intros x Ia Ib. exists (P (body_frame a) (F x)). split; [exists x; auto|]. exists (M x). split; [exact Ib|]. symmetry. apply X. }
-  unfold shows in H. destruct wt as [piece edge crossed | p container four].
+    exists y z, occupies P a F y /\ occupies P b G z /\ y = z).
+  { intros x Ia Ib. exists (P (body_frame a) (F x)), (P (body_frame a) (F x)). split; [exists x; auto|].
+    split; [|reflexivity]. exists (M x). split; [exact Ib|]. symmetry. apply X. }
+  unfold shows in H. destruct wt as [piece edge crossed | p container four | p q]; cbn [only_near].
   - destruct (corners_of (body_geometry a) piece) as [[|a0 [|a1 [|a2 [|]]]]|] eqn:CA; try discriminate.
     destruct (corners_of (body_geometry b) crossed) as [[|b0 [|b1 [|b2 [|]]]]|] eqn:CB; try discriminate.
     destruct (edge_of edge a0 a1 a2) as [p q] eqn:E.
@@ -640,9 +708,18 @@ Proof.
     + eapply corners_of_ok; [exact CB | exact IB].
   - destruct (point_of (body_geometry a) p) as [m|] eqn:PO; [|discriminate].
     destruct (point_of_ok _ _ _ PO) as (x & Hx & Ia). apply (MEET x Ia). eapply in_shape_ok; [exact H | apply HM; exact Hx].
+  - destruct (point_of (body_geometry a) p) as [m|] eqn:PA; [|discriminate].
+    destruct (point_of (body_geometry b) q) as [n|] eqn:PB; [|discriminate].
+    destruct (point_of_ok _ _ _ PA) as (x & Hx & Ia). destruct (point_of_ok _ _ _ PB) as (y & Hy & Ib).
+    exists (P (body_frame a) (F x)), (P (body_frame b) (G y)). split; [exists x; auto|]. split; [exists y; auto|].
+    rewrite <- X, (frame_keeps w WF pc t tmodel Ht P HP (body_frame b) (body_frame b) (le_n _) Hb).
+    rewrite (step_keeps 0 _ _ _ _ (placed_ok 0 _ _ HG)).
+    pose proof (holdsv_sub _ _ _ _ (HM _ _ Hx) Hy) as (D1 & D2 & D3).
+    exact (squares_ok _ _ _ _ _ _ (size_ok _ _ D1) (size_ok _ _ D2) (size_ok _ _ D3) H (Rle_refl _)).
 Qed.
 
-Theorem meets_ok_sound w m k i j t first wt : well_formed w -> meets_ok w m k i j t first wt = true -> meets w m k i j t.
+Theorem meets_ok_sound w m k i j t first wt : well_formed w -> meets_ok w m k i j t first wt = true ->
+  meets w m (only_near wt) k i j t.
 Proof.
   intros WF. unfold meets_ok. destruct (nth_error (pieces m) k) as [p|] eqn:Np; [|discriminate].
   destruct (nth_error (bodies w) i) as [a|] eqn:Na; [|discriminate].
@@ -657,7 +734,11 @@ Proof.
   - intros P A B HP HA HB.
     assert (Fa : (body_frame a <= length (frames w))%nat) by (apply (proj2 WF); exact (nth_error_In _ _ Na)).
     assert (Fb : (body_frame b <= length (frames w))%nat) by (apply (proj2 WF); exact (nth_error_In _ _ Nb)).
-    destruct first.
-    + exact (meet_at_ok w p _ _ P a b A B wt WF Fb (holds_number 0 t) HP HA HB H).
-    + destruct (meet_at_ok w p _ _ P b a B A wt WF Fa (holds_number 0 t) HP HB HA H) as (x & X & Y). exists x. auto.
+    pose proof (margin_down_ok w m a b) as MD. cbv zeta in H. destruct first.
+    + destruct (meet_at_ok w p _ _ P a b A B _ wt WF Fb (holds_number 0 t) HP HA HB H) as (x & y & X & Y & Q).
+      exists x, y. split; [exact X|]. split; [exact Y|]. destruct (only_near wt); [lra | exact Q].
+    + destruct (meet_at_ok w p _ _ P b a B A _ wt WF Fa (holds_number 0 t) HP HB HA H) as (x & y & X & Y & Q).
+      exists y, x. split; [exact Y|]. split; [exact X|]. destruct (only_near wt); [|symmetry; exact Q].
+      replace (norm (sub y x)) with (norm (sub x y)); [lra|]. apply norm_kept.
+      unfold dot, sub, add, scale; cbn [vx vy vz]. ring.
 Qed.

@@ -45,8 +45,8 @@ let pairs w m =
     bodies;
   !count
 
-type later = Nothing | Meet of string | Near of string  (* what is shown, and what is not looked at *)
-type verdict = Proven of int * later | Not_proven of string | Bad of string
+type meeting = Nothing | Contact of string | Within_margin of string
+type verdict = Proven of int * meeting | Not_proven of string | Bad of string
 
 (* Which part of the claim is not shown. *)
 let fault w m =
@@ -74,12 +74,11 @@ let verdict (known : Read.known) hash limit (motion, proof) =
         | Some c -> (
             let body k = Printf.sprintf "'%s' (body %d)" known.body.(k).body_name k in
             let both = body c.lower ^ " and " ^ body c.upper in
-            match c.witness with
-            | None -> Proven (n, Near (both ^ " come within their margin"))
-            | Some x when accepts_meeting w m c.piece c.lower c.upper c.time c.of_lower x ->
-                let t = Z.to_float c.time.mantissa *. (2. ** Z.to_float c.time.exponent) in
-                Proven (n, Meet (Printf.sprintf "%s meet at t = %.17g of piece %d" both t c.piece))
-            | Some _ -> Not_proven ("the witness does not show that " ^ both ^ " meet"))
+            let t = Z.to_float c.time.mantissa *. (2. ** Z.to_float c.time.exponent) in
+            let text = Printf.sprintf "%s at t = %.17g of piece %d" both t c.piece in
+            if not (accepts_meeting w m c.piece c.lower c.upper c.time c.of_lower c.witness) then
+              Not_proven ("the witness does not show that " ^ both ^ " meet")
+            else match c.witness with Near _ -> Proven (n, Within_margin text) | _ -> Proven (n, Contact text))
   with
   | Read.Bad_input why -> Bad ("bad input: " ^ why)
   | Read.Out_of_scope what -> Bad ("out of scope: " ^ what)
@@ -106,14 +105,14 @@ let shown text =
 
 let as_json = function
   | Proven (n, Nothing) -> Printf.sprintf {|{"proven": true, "pairs": %d}|} n
-  | Proven (n, Meet what) -> Printf.sprintf {|{"proven": true, "pairs": %d, "contact": %s}|} n (quoted what)
-  | Proven (n, Near what) -> Printf.sprintf {|{"proven": true, "pairs": %d, "not_looked_at": %s}|} n (quoted what)
+  | Proven (n, Contact what) -> Printf.sprintf {|{"proven": true, "pairs": %d, "contact": %s}|} n (quoted what)
+  | Proven (n, Within_margin what) -> Printf.sprintf {|{"proven": true, "pairs": %d, "within_margin": %s}|} n (quoted what)
   | Not_proven why | Bad why -> Printf.sprintf {|{"proven": false, "reason": %s}|} (quoted why)
 
 let as_text = function
   | Proven (n, Nothing) -> Printf.sprintf "proven, %d pairs" n
-  | Proven (n, Meet what) -> Printf.sprintf "proven, %d pairs; and that %s" n what
-  | Proven (n, Near what) -> Printf.sprintf "proven, %d pairs; that %s later is not looked at" n what
+  | Proven (n, Contact what) -> Printf.sprintf "proven, %d pairs; and these meet: %s" n what
+  | Proven (n, Within_margin what) -> Printf.sprintf "proven, %d pairs; and these come within their margin: %s" n what
   | Not_proven why -> "not proven: " ^ why
   | Bad why -> why
 

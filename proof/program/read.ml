@@ -546,11 +546,13 @@ let double b =
   let bits_in_all = Z.numbits (Z.of_int mantissa) + exponent in
   if bits_in_all > 41 || (bits_in_all = 41 && mantissa land (mantissa - 1) <> 0) then
     raise (Bad_input "a witness has a number beyond 2^40");
+  let rec least m e = if m land 1 = 0 then least (m lsr 1) (e + 1) else (m, e) in
+  let mantissa, exponent = if mantissa = 0 then (0, 0) else least mantissa exponent in
   { mantissa = Z.of_int (if Int64.compare bits 0L < 0 then - mantissa else mantissa); exponent = Z.of_int exponent }
 
-(* A contact: in a piece, at a time, of bodies [lower] < [upper]; the witness is about a point of the lower one if
-   [of_lower]. No witness: they only come within their margin, which is not looked at. *)
-type contact = { piece : int; lower : int; upper : int; time : number; of_lower : bool; witness : witness option }
+(* A contact: in a piece, at a time, of bodies [lower] < [upper]; the witness is about a point of the lower one in the
+   upper one if [of_lower], else the other way round. *)
+type contact = { piece : int; lower : int; upper : int; time : number; of_lower : bool; witness : witness }
 
 let pieces_of = function MeshSurface ts -> List.length ts | Boxes cells -> List.length cells | _ -> 1
 
@@ -602,19 +604,19 @@ let contact b known pieces =
       let crossed = varint b in
       match (a, c) with
       | MeshSurface _, MeshSurface _ when triangle < pieces_of a && crossed < pieces_of c && edge <= 2 ->
-          Some (Cross (triangle, edge, crossed))
+          Cross (triangle, edge, crossed)
       | _ -> raise (Bad_input "CROSS names a triangle or edge that is not there")
     end
     else if kind <= 3 then begin
       let p = place b a in
       let container = below "a piece" b (pieces_of c) in
       let four = match c with Hull points -> List.init 4 (fun _ -> below "a vertex" b (List.length points)) | _ -> [] in
-      Some (Inside (p, container, four))
+      Inside (p, container, four)
     end
     else begin
-      ignore (place b a);
-      ignore (place b c);
-      None
+      let p = place b a in
+      let q = place b c in
+      Near (p, q)
     end
   in
   { piece; lower = min one other; upper = max one other; time; of_lower = owner <= holder; witness }
