@@ -28,4 +28,4 @@ Extract Inlined Constant Z.ltb => "Big.ltb".
 Extract Inlined Constant Z.of_nat => "Big.of_int".
 Extract Inlined Constant Z.to_nat => "Big.to_nat".
 
-Extraction "checker.ml" accepts accepts_meeting checked has_rotation nothing is_meaningful reasons_ok pieces_join.
+Extraction "checker.ml" prepare_world accepts_prepared accepts_meeting checked has_rotation nothing is_meaningful reasons_ok pieces_join.

@@ -248,6 +248,168 @@ Proof.
   - intros H. eexists. split; [left; reflexivity|]. intros s. split; [lra | intros _; exact H].
 Qed.
 
+(** ** Bounds: boxes along the axes *)
+
+Record bounds := Bounds { x0 : Z; x1 : Z; y0 : Z; y1 : Z; z0 : Z; z1 : Z }.
+Definition in_bounds (b : bounds) (x : vec) : Prop :=
+  V (x0 b) <= vx x <= V (x1 b) /\ V (y0 b) <= vy x <= V (y1 b) /\ V (z0 b) <= vz x <= V (z1 b).
+Definition both_bounds (a b : bounds) : bounds :=
+  Bounds (Z.min (x0 a) (x0 b)) (Z.max (x1 a) (x1 b)) (Z.min (y0 a) (y0 b)) (Z.max (y1 a) (y1 b))
+         (Z.min (z0 a) (z0 b)) (Z.max (z1 a) (z1 b)).
+Definition join_bounds (a b : option bounds) : option bounds :=
+  match a, b with Some x, Some y => Some (both_bounds x y) | _, _ => None end.
+
+Definition bounds_of_corner (c : round) : option bounds :=
+  let p := centre c in
+  match semiaxes c with
+  | None =>
+      if is_const (tx p) && is_const (ty p) && is_const (tz p) then
+        Some (Bounds (c0 (tx p) - rem (tx p)) (c0 (tx p) + rem (tx p)) (c0 (ty p) - rem (ty p)) (c0 (ty p) + rem (ty p))
+                     (c0 (tz p) - rem (tz p)) (c0 (tz p) + rem (tz p)))
+      else None
+  | Some _ => None
+  end.
+Fixpoint bounds_of_corners (cs : list round) : option bounds :=
+  match cs with
+  | [] => None
+  | [c] => bounds_of_corner c
+  | c :: rest => join_bounds (bounds_of_corner c) (bounds_of_corners rest)
+  end.
+Definition bounds_of (o : outline) : option bounds :=
+  match o with Outline cs r => if Z.leb r 0 then bounds_of_corners cs else None | Wall _ _ _ => None end.
+
+Definition bounded (b : bounds) (o : outline) : Prop := forall s x, covers s o x -> in_bounds b x.
+
+Lemma both_bounds_ok a b x : in_bounds a x \/ in_bounds b x -> in_bounds (both_bounds a b) x.
+Proof.
+  unfold in_bounds, both_bounds; cbn [x0 x1 y0 y1 z0 z1].
+  assert (L : forall p q, V (Z.min p q) <= V p /\ V (Z.min p q) <= V q) by (intros; split; apply V_le; lia).
+  pose proof (L (x0 a) (x0 b)). pose proof (L (y0 a) (y0 b)). pose proof (L (z0 a) (z0 b)).
+  pose proof (V_max (x1 a) (x1 b)). pose proof (V_max (y1 a) (y1 b)). pose proof (V_max (z1 a) (z1 b)).
+  intros [(A & B & C)|(A & B & C)]; repeat split; lra.
+Qed.
+
+Lemma bounds_of_corner_ok s c b p a : bounds_of_corner c = Some b -> holds_round c s p a -> a = Vec 0 0 0 /\ in_bounds b p.
+Proof.
+  unfold bounds_of_corner, holds_round. destruct (semiaxes c); [discriminate|].
+  destruct (is_const (tx (centre c)) && is_const (ty (centre c)) && is_const (tz (centre c))) eqn:K; [|discriminate].
+  rewrite !andb_true_iff in K. destruct K as [[K1 K2] K3]. apply is_const_const in K1, K2, K3. intros [= <-] [(H1 & H2 & H3) ->].
+  split; [reflexivity|]. rewrite K1 in H1. rewrite K2 in H2. rewrite K3 in H3. apply holds_const, abs_in in H1, H2, H3.
+  unfold in_bounds; cbn [x0 x1 y0 y1 z0 z1]. rewrite !V_add, !V_sub. repeat split; lra.
+Qed.
+
+Lemma bounds_of_corners_ok s cs c p a : In c cs -> holds_round c s p a -> forall b, bounds_of_corners cs = Some b ->
+  a = Vec 0 0 0 /\ in_bounds b p.
+Proof.
+  intros I H. induction cs as [|d cs IH]; [destruct I|]. intros b. cbn [bounds_of_corners]. destruct cs as [|e cs].
+  - destruct I as [->|[]]. intros E. exact (bounds_of_corner_ok s c b p a E H).
+  - destruct (bounds_of_corner d) as [x|] eqn:D; [|discriminate].
+    destruct (bounds_of_corners (e :: cs)) as [y|]; [|discriminate]. intros [= <-]. destruct I as [->|I].
+    + destruct (bounds_of_corner_ok s c x p a D H) as [A B]. split; [exact A | apply both_bounds_ok; left; exact B].
+    + destruct (IH I y eq_refl) as [A B]. split; [exact A | apply both_bounds_ok; right; exact B].
+Qed.
+
+Lemma bounds_of_ok o b : bounds_of o = Some b -> bounded b o.
+Proof.
+  destruct o as [cs r|]; [|discriminate]. cbn [bounds_of]. destruct (Z.leb_spec r 0) as [R|]; [|discriminate].
+  intros E s x C. cbn [covers] in C. apply V_le in R. rewrite V_0 in R.
+  assert (K : forall v, exists p, in_bounds b p /\ dot v x <= dot v p).
+  { intros v. destruct (C v) as (c & p & a & I & H & L). destruct (bounds_of_corners_ok s cs c p a I H b E) as [-> B].
+    exists p. split; [exact B|]. rewrite norm_nil in L. pose proof (norm_nonneg v). nra. }
+  destruct (K (Vec 1 0 0)) as (p1 & B1 & L1). destruct (K (Vec (-1) 0 0)) as (p2 & B2 & L2).
+  destruct (K (Vec 0 1 0)) as (p3 & B3 & L3). destruct (K (Vec 0 (-1) 0)) as (p4 & B4 & L4).
+  destruct (K (Vec 0 0 1)) as (p5 & B5 & L5). destruct (K (Vec 0 0 (-1))) as (p6 & B6 & L6).
+  unfold in_bounds, dot in *; cbn [vx vy vz] in *. repeat split; lra.
+Qed.
+
+(** ** Pieces in a tree
+
+    In their order. A group has bounds, or none; a piece of the tree is within those of all groups that have it. *)
+Inductive forest :=
+  | Piece (o : outline)
+  | Group (size : nat) (b : option bounds) (l r : forest).
+
+Fixpoint has (t : forest) (o : outline) : Prop :=
+  match t with
+  | Piece p => p = o
+  | Group _ b l r => (has l o \/ has r o) /\ match b with Some x => bounded x o | None => True end
+  end.
+
+Definition count (t : forest) : nat := match t with Piece _ => 1%nat | Group n _ _ _ => n end.
+
+(** The first k pieces and the others; none if there are no such. *)
+Fixpoint split (k : nat) (t : forest) : option (forest * forest) :=
+  match t with
+  | Piece _ => None
+  | Group n b l r =>
+      let c := count l in
+      if Nat.ltb k c then match split k l with Some (l1, l2) => Some (l1, Group (n - k) b l2 r) | None => None end
+      else if Nat.eqb k c then Some (l, r)
+      else match split (k - c) r with Some (r1, r2) => Some (Group k b l r1, r2) | None => None end
+  end.
+
+Lemma split_has t o : forall k l r, split k t = Some (l, r) -> has t o -> has l o \/ has r o.
+Proof.
+  induction t as [p | n b l IHl r IHr]; intros k x y; cbn [split]; [discriminate|].
+  destruct (Nat.ltb k (count l)); [|destruct (Nat.eqb k (count l))].
+  - destruct (split k l) as [[l1 l2]|] eqn:E; [|discriminate]. intros [= <- <-] [H B]. cbn [has].
+    destruct H as [H|H]; [destruct (IHl _ _ _ E H)|]; tauto.
+  - intros [= <- <-] [H _]. exact H.
+  - destruct (split (k - count l) r) as [[r1 r2]|] eqn:E; [|discriminate]. intros [= <- <-] [H B]. cbn [has].
+    destruct H as [H|H]; [|destruct (IHr _ _ _ E H)]; tauto.
+Qed.
+
+(** A list as a tree: by halves, with bounds for groups of four and more. *)
+Definition no_piece : outline := Outline [] 0.
+Fixpoint in_a_row (o : outline) (os : list outline) : forest :=
+  match os with [] => Piece o | p :: rest => Group (S (length os)) None (Piece o) (in_a_row p rest) end.
+
+Fixpoint grow (fuel : nat) (os : list outline) : forest * option bounds :=
+  match os with
+  | [] => (Piece no_piece, None)
+  | [o] => (Piece o, bounds_of o)
+  | o :: rest =>
+      match fuel with
+      | O => (in_a_row o rest, None)
+      | S n =>
+          let size := length os in
+          let k := Nat.div size 2 in
+          let (l, a) := grow n (firstn k os) in
+          let (r, b) := grow n (skipn k os) in
+          let both := join_bounds a b in
+          (Group size (if Nat.leb 4 size then both else None) l r, both)
+      end
+  end.
+Definition forest_of (os : list outline) : forest := fst (grow 64 os).
+
+Lemma in_a_row_has os : forall o p, In p (o :: os) -> has (in_a_row o os) p.
+Proof.
+  induction os as [|q os IH]; intros o p I; cbn [in_a_row has].
+  - destruct I as [->|[]]. reflexivity.
+  - split; [|exact Logic.I]. destruct I as [->|I]; [left; reflexivity | right; apply IH; exact I].
+Qed.
+
+Lemma grow_has fuel : forall os o, In o os ->
+  has (fst (grow fuel os)) o /\ forall b, snd (grow fuel os) = Some b -> bounded b o.
+Proof.
+  induction fuel as [|n IH]; intros os o I; (destruct os as [|p [|q os]]; [destruct I | |]).
+  - destruct I as [->|[]]. split; [reflexivity | apply bounds_of_ok].
+  - cbn [grow fst snd]. split; [apply in_a_row_has; exact I | discriminate].
+  - destruct I as [->|[]]. split; [reflexivity | apply bounds_of_ok].
+  - cbn [grow]. set (os' := p :: q :: os) in *. set (k := Nat.div (length os') 2).
+    pose proof (IH (firstn k os') o) as L. pose proof (IH (skipn k os') o) as R.
+    destruct (grow n (firstn k os')) as [l a]. destruct (grow n (skipn k os')) as [r b]. cbn [fst snd] in *.
+    rewrite <- (firstn_skipn k os') in I. apply in_app_or in I.
+    assert (B : forall x, join_bounds a b = Some x -> bounded x o).
+    { intros x E s y C. destruct a as [a|], b as [b|]; try discriminate. injection E as <-. apply both_bounds_ok.
+      destruct I as [I|I]; [left; exact (proj2 (L I) a eq_refl s y C) | right; exact (proj2 (R I) b eq_refl s y C)]. }
+    split; [|exact B]. cbn [has]. split; [destruct I as [I|I]; [left; apply L | right; apply R]; exact I|].
+    destruct (Nat.leb 4 (length os')); [|exact Logic.I]. destruct (join_bounds a b) as [x|]; [exact (B x eq_refl) | exact Logic.I].
+Qed.
+
+Lemma forest_of_has os o : In o os -> has (forest_of os) o.
+Proof. intros I. apply (grow_has 64 os o I). Qed.
+
 (** ** How far pieces reach *)
 
 (** No bound of one of two is none of both. *)
@@ -286,11 +448,43 @@ Definition reach_one (f : func) (length : Z) (o : outline) : option upper :=
   | Wall _ _ _ => None
   end.
 
-Fixpoint reach (f : func) (length : Z) (os : list outline) : option upper :=
-  match os with
-  | [] => None
-  | [o] => reach_one f length o
-  | o :: rest => upper_join (reach_one f length o) (reach f length rest)
+(** A linear function on a box: in each coordinate one of both ends is the farthest. *)
+Definition ends_reach (lo hi : Z) (m : tm) : upper :=
+  upper_max (upper_of (tm_mul (const lo 0) m)) (upper_of (tm_mul (const hi 0) m)).
+Definition bounds_reach (f : func) (b : bounds) : upper :=
+  upper_add (upper_add (upper_add (ends_reach (x0 b) (x1 b) (tx (fv f))) (ends_reach (y0 b) (y1 b) (ty (fv f))))
+    (ends_reach (z0 b) (z1 b) (tz (fv f)))) (upper_of (fd f)).
+Definition upper_leb (a b : upper) : bool := Z.leb (u0 a) (u0 b) && Z.leb (u1 a) (u1 b) && Z.leb (u2 a) (u2 b).
+
+(** The greater of [best] and what the pieces reach. Groups that don't reach beyond it are passed over. *)
+Fixpoint reach_in (f : func) (length : Z) (t : forest) (best : upper) : option upper :=
+  match t with
+  | Piece o => upper_join (Some best) (reach_one f length o)
+  | Group _ b l r =>
+      if match b with Some x => upper_leb (bounds_reach f x) best | None => false end then Some best
+      else match reach_in f length l best with Some u => reach_in f length r u | None => None end
+  end.
+
+(** A piece that is likely to be the farthest, by one of the three coefficients. (Any would do for the proof.) *)
+Definition bounds_at (t : forest) : option bounds := match t with Group _ b _ _ => b | Piece o => bounds_of o end.
+Fixpoint likely (f : func) (pick : upper -> Z) (t : forest) : outline :=
+  match t with
+  | Piece o => o
+  | Group _ _ l r =>
+      match bounds_at l, bounds_at r with
+      | Some x, Some y =>
+          if Z.ltb (pick (bounds_reach f x)) (pick (bounds_reach f y)) then likely f pick r else likely f pick l
+      | _, _ => likely f pick l
+      end
+  end.
+
+Definition reach (f : func) (length : Z) (t : forest) : option upper :=
+  let one pick := reach_one f length (likely f pick t) in
+  match t with
+  | Piece o => reach_one f length o
+  | Group _ None _ _ => match one u1 with Some u => reach_in f length t u | None => None end
+  | Group _ (Some _) _ _ =>
+      match upper_join (one u0) (upper_join (one u1) (one u2)) with Some u => reach_in f length t u | None => None end
   end.
 
 Definition below_opt (u : option upper) (s y : R) : Prop := match u with Some w => below w s y | None => True end.
@@ -436,13 +630,49 @@ Proof.
   eapply Rle_trans; [|apply mulup_ge]. apply Rmult_le_compat_l; assumption.
 Qed.
 
-Lemma reach_ok f v d l os o x : holdsf s f v d -> norm v <= V l -> In o os -> covers s o x ->
-  below_opt (reach f l os) s (dot v x + d).
+Lemma ends_reach_ok lo hi m k y : holds m s k -> V lo <= y <= V hi -> below (ends_reach lo hi m) s (k * y).
 Proof.
-  intros Hf Hl I C. pose proof (reach_one_ok f v d l o x Hf Hl C) as K. induction os as [|o' os IH]; [destruct I|].
-  cbn [reach]. destruct os as [|o'' os].
-  - destruct I as [->|[]]. exact K.
-  - destruct I as [->|I]; [apply below_join_l; exact K | apply below_join_r; apply IH; exact I].
+  intros H B. unfold ends_reach. destruct (Rle_lt_dec 0 k) as [P|N].
+  - apply below_weaken with (V hi * k); [nra|]. eapply below_mono; [exact Hs | apply upper_max_r|].
+    apply below_of. apply holds_mul; [exact Hs | apply holds_exact | exact H].
+  - apply below_weaken with (V lo * k); [nra|]. eapply below_mono; [exact Hs | apply upper_max_l|].
+    apply below_of. apply holds_mul; [exact Hs | apply holds_exact | exact H].
+Qed.
+
+Lemma bounds_reach_ok f v d b x : holdsf s f v d -> in_bounds b x -> below (bounds_reach f b) s (dot v x + d).
+Proof.
+  intros [(H1 & H2 & H3) Hd] (B1 & B2 & B3). unfold bounds_reach, dot.
+  repeat apply below_add; try (apply ends_reach_ok; assumption). apply below_of. exact Hd.
+Qed.
+
+Lemma upper_leb_ok a b : upper_leb a b = true -> upper_le a b.
+Proof. unfold upper_leb, upper_le. rewrite !andb_true_iff, !Z.leb_le. tauto. Qed.
+
+Lemma reach_in_ok f v d l t : holdsf s f v d -> norm v <= V l -> forall best u, reach_in f l t best = Some u ->
+  (forall y, below best s y -> below u s y) /\ forall o x, has t o -> covers s o x -> below u s (dot v x + d).
+Proof.
+  intros Hf Hl. induction t as [o | n b t1 IH1 t2 IH2]; intros best u; cbn [reach_in has].
+  - destruct (reach_one f l o) as [w|] eqn:R; [|discriminate]. cbn [upper_join]. intros [= <-]. split.
+    + intros y. apply below_mono; [exact Hs | apply upper_max_l].
+    + intros o' x -> C. pose proof (reach_one_ok f v d l o' x Hf Hl C) as K. rewrite R in K. cbn [below_opt] in K.
+      eapply below_mono; [exact Hs | apply upper_max_r | exact K].
+  - destruct (match b with Some x => upper_leb (bounds_reach f x) best | None => false end) eqn:P.
+    + intros [= <-]. split; [auto|]. intros o x [_ B] C. destruct b as [b|]; [|discriminate].
+      eapply below_mono; [exact Hs | apply upper_leb_ok; exact P|]. apply bounds_reach_ok; [exact Hf | exact (B s x C)].
+    + destruct (reach_in f l t1 best) as [w|] eqn:E1; [|discriminate]. intros E2.
+      destruct (IH1 _ _ E1) as [M1 K1]. destruct (IH2 _ _ E2) as [M2 K2]. split; [auto|].
+      intros o x [[H|H] _] C; [apply M2; exact (K1 o x H C) | exact (K2 o x H C)].
+Qed.
+
+Lemma reach_ok f v d l t o x : holdsf s f v d -> norm v <= V l -> has t o -> covers s o x ->
+  below_opt (reach f l t) s (dot v x + d).
+Proof.
+  intros Hf Hl I C.
+  assert (K : forall start, below_opt (match start with Some u => reach_in f l t u | None => None end) s (dot v x + d)).
+  { intros [u|]; [|exact Logic.I]. destruct (reach_in f l t u) as [w|] eqn:R; [|exact Logic.I].
+    exact (proj2 (reach_in_ok f v d l t Hf Hl u w R) o x I C). }
+  unfold reach. destruct t as [p | n [b|] t1 t2]; [|apply K | apply K].
+  cbn [has] in I. subst p. exact (reach_one_ok f v d l o x Hf Hl C).
 Qed.
 
 End AtOneTime.
@@ -452,7 +682,7 @@ End AtOneTime.
 (** A body, prepared; a partner with some of its pieces, the margin, rounded up, and the time up to which the pair is
     ignored, rounded down. *)
 Record sbody := Sbody { sb_frame : nat; sb_place : step }.
-Record partner := Partner { p_body : sbody; p_pieces : list outline; p_margin : Z; p_from : Z }.
+Record partner := Partner { p_body : sbody; p_pieces : forest; p_margin : Z; p_from : Z }.
 
 (** A function f(x) = v.x + d with constant v and d in a frame. It is to be above 0 on A and below on the partners; which
     of them is a wall, on all of which it is known to be so (or 0)? *)
@@ -475,11 +705,11 @@ Definition wall_func (o : outline) (turned : bool) : option func :=
   end.
 
 (** The line of a wall, which A or the partner is. *)
-Definition wall_line (A : sbody) (os : list outline) (p : partner) (turned : bool) : option line :=
+Definition wall_line (A : sbody) (os : forest) (p : partner) (turned : bool) : option line :=
   match os, p_pieces p with
-  | [Wall _ _ _ as o], _ =>
+  | Piece (Wall _ _ _ as o), _ =>
       option_map (fun f => Line (sb_frame A) (up (sb_place A) f) OwnWall) (wall_func o turned)
-  | _, [o] =>
+  | _, Piece o =>
       option_map (fun f => Line (sb_frame (p_body p)) (up (sb_place (p_body p)) (opposite f)) PartnersWall)
         (wall_func o turned)
   | _, _ => None
@@ -489,9 +719,9 @@ Definition wall_line (A : sbody) (os : list outline) (p : partner) (turned : boo
 Definition length_up (v : tvec) : Z :=
   Z.sqrt_up (bound (tx v) * bound (tx v) + bound (ty v) * bound (ty v) + bound (tz v) * bound (tz v)).
 
-Definition own_reach (sd : side) (f : func) (l : Z) (os : list outline) : option upper :=
+Definition own_reach (sd : side) (f : func) (l : Z) (os : forest) : option upper :=
   match sd with OwnWall => Some (upper_const 0) | _ => reach (opposite f) l os end.
-Definition partners_reach (sd : side) (f : func) (l : Z) (os : list outline) : option upper :=
+Definition partners_reach (sd : side) (f : func) (l : Z) (os : forest) : option upper :=
   match sd with PartnersWall => Some (upper_const 0) | _ => reach f l os end.
 
 Definition shown (fs : tree) (known : list (nat * func)) (sd : side) (l : Z) (ua : option upper) (p : partner) : bool :=
@@ -505,7 +735,7 @@ Definition shown (fs : tree) (known : list (nat * func)) (sd : side) (l : Z) (ua
   end.
 
 (** The partners that are not shown to be apart from pieces [os] of A over [a, b]. *)
-Definition not_shown (sfs : list sframe) (q : spiece) (A : sbody) (os : list outline) (n : line)
+Definition not_shown (sfs : list sframe) (q : spiece) (A : sbody) (os : forest) (n : line)
     (ps : list partner) (a b : Z) : list partner :=
   let fs := tree_at sfs q a b in
   let known := chain (length fs) fs (l_frame n) (l_func n) in
@@ -518,7 +748,7 @@ Definition not_shown (sfs : list sframe) (q : spiece) (A : sbody) (os : list out
   end.
 
 (** Time is halved for those that are left, [fuel] times. *)
-Fixpoint separated (fuel : nat) (sfs : list sframe) (q : spiece) (A : sbody) (os : list outline) (n : line)
+Fixpoint separated (fuel : nat) (sfs : list sframe) (q : spiece) (A : sbody) (os : forest) (n : line)
     (ps : list partner) (a b : Z) : bool :=
   match not_shown sfs q A os n ps a b with
   | [] => true
@@ -532,9 +762,9 @@ Fixpoint separated (fuel : nat) (sfs : list sframe) (q : spiece) (A : sbody) (os
   end.
 
 (** A keeps more than its margin from a partner, where the frames stand at P. *)
-Definition keeps (P : nat -> vec -> vec) (A : sbody) (os : list outline) (p : partner) : Prop :=
+Definition keeps (P : nat -> vec -> vec) (A : sbody) (os : forest) (p : partner) : Prop :=
   forall F G, (forall s, holds_step s (sb_place A) F) -> (forall s, holds_step s (sb_place (p_body p)) G) ->
-  forall x y o o', In o os -> (forall s, covers s o x) -> In o' (p_pieces p) -> (forall s, covers s o' y) ->
+  forall x y o o', has os o -> (forall s, covers s o x) -> has (p_pieces p) o' -> (forall s, covers s o' y) ->
   V (p_margin p) < norm (sub (P (sb_frame A) (F x)) (P (sb_frame (p_body p)) (G y))).
 
 Lemma length_up_ok s m v : Rabs s <= 1 -> holdsv m s v -> norm v <= V (length_up m).
@@ -555,14 +785,14 @@ Proof.
 Qed.
 
 (** The line keeps its promise: it is at least 0 on A if A is its wall, at most 0 on the partner if that is. *)
-Definition line_ok (n : line) (A : sbody) (os : list outline) (p : partner) : Prop :=
+Definition line_ok (n : line) (A : sbody) (os : forest) (p : partner) : Prop :=
   forall s F G, Rabs s <= 1 -> holds_step s (sb_place A) F -> holds_step s (sb_place (p_body p)) G ->
   exists v d, holdsf s (l_func n) v d /\
     match l_side n with
     | NoWall => True
-    | OwnWall => l_frame n = sb_frame A /\ forall o x, In o os -> covers s o x -> 0 <= dot v (F x) + d
+    | OwnWall => l_frame n = sb_frame A /\ forall o x, has os o -> covers s o x -> 0 <= dot v (F x) + d
     | PartnersWall =>
-        l_frame n = sb_frame (p_body p) /\ forall o y, In o (p_pieces p) -> covers s o y -> dot v (G y) + d <= 0
+        l_frame n = sb_frame (p_body p) /\ forall o y, has (p_pieces p) o -> covers s o y -> dot v (G y) + d <= 0
     end.
 
 Lemma along_ok i x y z A os p : line_ok (along i x y z) A os p.
@@ -584,24 +814,24 @@ Qed.
 
 Lemma wall_line_ok A os p turned n : wall_line A os p turned = Some n -> line_ok n A os p.
 Proof.
-  assert (OWN : forall o f, wall_func o turned = Some f -> os = [o] ->
+  assert (OWN : forall o f, wall_func o turned = Some f -> os = Piece o ->
     line_ok (Line (sb_frame A) (up (sb_place A) f) OwnWall) A os p).
   { intros o f W -> s F G Hs HF HG. destruct (wall_func_ok s o turned f W) as (v & d & Hf & K).
     destruct (up_ok s Hs _ F f v d HF Hf) as (v1 & d1 & H1 & _ & X). exists v1, d1. split; [exact H1|].
-    split; [reflexivity|]. intros o' x [<-|[]] C. rewrite X. apply K. exact C. }
-  assert (PART : forall o f, wall_func o turned = Some f -> p_pieces p = [o] ->
+    split; [reflexivity|]. intros o' x <- C. rewrite X. apply K. exact C. }
+  assert (PART : forall o f, wall_func o turned = Some f -> p_pieces p = Piece o ->
     line_ok (Line (sb_frame (p_body p)) (up (sb_place (p_body p)) (opposite f)) PartnersWall) A os p).
   { intros o f W E s F G Hs HF HG. destruct (wall_func_ok s o turned f W) as (v & d & Hf & K).
     destruct (up_ok s Hs _ G _ _ _ HG (opposite_ok s f v d Hf)) as (v1 & d1 & H1 & _ & X). exists v1, d1.
-    split; [exact H1|]. split; [reflexivity|]. intros o' y I C. rewrite E in I. destruct I as [<-|[]].
+    split; [exact H1|]. split; [reflexivity|]. intros o' y I C. rewrite E in I. cbn [has] in I. subst o'.
     specialize (K y C). cbn [l_side]. rewrite X.
     replace (dot (scale (-1) v) y) with (- dot v y) by (unfold dot, scale; cbn [vx vy vz]; ring). lra. }
-  assert (P : match p_pieces p with [o] => option_map (fun f =>
+  assert (P : match p_pieces p with Piece o => option_map (fun f =>
       Line (sb_frame (p_body p)) (up (sb_place (p_body p)) (opposite f)) PartnersWall) (wall_func o turned)
       | _ => None end = Some n -> line_ok n A os p).
-  { destruct (p_pieces p) as [|o [|]] eqn:E; try discriminate. destruct (wall_func o turned) as [f|] eqn:W; [|discriminate].
+  { destruct (p_pieces p) as [o|] eqn:E; [|discriminate]. destruct (wall_func o turned) as [f|] eqn:W; [|discriminate].
     intros [= <-]. apply (PART o f W). first [exact E | reflexivity]. }
-  unfold wall_line. destruct os as [|o [|]]; [exact P | | destruct o; exact P].
+  unfold wall_line. destruct os as [o|]; [|exact P].
   destruct o as [c r|nn dd bb]; [exact P|]. destruct (wall_func (Wall nn dd bb) turned) as [f|] eqn:W; [|discriminate].
   intros [= <-]. exact (OWN _ f W eq_refl).
 Qed.

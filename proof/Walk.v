@@ -41,13 +41,13 @@ Variable q : spiece.
 Variable A : sbody.
 
 (** Partners that are ignored up to a time take part from then on. *)
-Definition leaf (n : line) (os : list outline) (ps : list partner) (a b : Z) : bool :=
+Definition leaf (n : line) (os : forest) (ps : list partner) (a b : Z) : bool :=
   Nat.leb (l_frame n) (length sfs) &&
   separated leaf_halvings sfs q A os n (filter (fun p => Z.leb (p_from p) a) ps) a b &&
   forallb (fun p => Z.leb (p_from p) a || Z.leb b (p_from p) ||
                     separated leaf_halvings sfs q A os n [p] (p_from p) b) ps.
 
-Fixpoint check (nd : node) (os : list outline) (ps : list partner) (a b : Z) : bool :=
+Fixpoint check (nd : node) (os : forest) (ps : list partner) (a b : Z) : bool :=
   match nd with
   | Sep where_ x y z => leaf (along (frame_of where_ A ps) x y z) os ps a b
   | AtWall turned =>
@@ -57,13 +57,16 @@ Fixpoint check (nd : node) (os : list outline) (ps : list partner) (a b : Z) : b
       end
   | Time l r => let c := ((a + b) / 2)%Z in check l os ps a c && check r os ps c b
   | Partners k l r => cuts k (length ps) && (check l os (firstn k ps) a b && check r os (skipn k ps) a b)
-  | Own k l r => cuts k (length os) && (check l (firstn k os) ps a b && check r (skipn k os) ps a b)
+  | Own k l r => match split k os with Some (x, y) => check l x ps a b && check r y ps a b | None => false end
   | Other k l r =>
       match ps with
       | [p] =>
-          cuts k (length (p_pieces p)) &&
-          (check l os [Partner (p_body p) (firstn k (p_pieces p)) (p_margin p) (p_from p)] a b &&
-          check r os [Partner (p_body p) (skipn k (p_pieces p)) (p_margin p) (p_from p)] a b)
+          match split k (p_pieces p) with
+          | Some (x, y) =>
+              check l os [Partner (p_body p) x (p_margin p) (p_from p)] a b &&
+              check r os [Partner (p_body p) y (p_margin p) (p_from p)] a b
+          | None => false
+          end
       | _ => false
       end
   end.
@@ -71,9 +74,9 @@ End Check.
 
 (** ** Bodies, pairs, pieces of the motion *)
 
-Record prepared := Prepared { pr_number : nat; pr_body : body; pr_sbody : sbody; pr_pieces : list outline }.
+Record prepared := Prepared { pr_number : nat; pr_body : body; pr_sbody : sbody; pr_pieces : forest }.
 Definition prepare (i : nat) (b : body) : prepared :=
-  Prepared i b (Sbody (body_frame b) (placed (body_place b))) (outlines (body_geometry b)).
+  Prepared i b (Sbody (body_frame b) (placed (body_place b))) (forest_of (outlines (body_geometry b))).
 Fixpoint prepare_all (i : nat) (bs : list body) : list prepared :=
   match bs with [] => [] | b :: rest => prepare i b :: prepare_all (S i) rest end.
 
@@ -157,12 +160,15 @@ Definition is_well_formed (w : world) : bool :=
 Definition is_meaningful (w : world) (m : motion) : bool :=
   forallb frame_means (frames w) && forallb piece_means (pieces m) && forallb (fun b => has_rotation (body_place b)) (bodies w).
 
-Definition accepts (w : world) (m : motion) (nodes : list node) : bool :=
+(** The program prepares a world once, for all records about it. *)
+Definition prepare_world (w : world) : list prepared := prepare_all 0 (bodies w).
+Definition accepts_prepared (bs : list prepared) (w : world) (m : motion) (nodes : list node) : bool :=
   is_well_formed w && is_meaningful w m && reasons_ok w && pieces_join w (pieces m) &&
-  match check_pieces w m (map sframe_of (frames w)) (prepare_all 0 (bodies w)) (pieces m) nodes with
+  match check_pieces w m (map sframe_of (frames w)) bs (pieces m) nodes with
   | Some [] => true
   | _ => false
   end.
+Definition accepts (w : world) (m : motion) (nodes : list node) : bool := accepts_prepared (prepare_world w) w m nodes.
 
 (** ** Soundness *)
 
@@ -197,14 +203,14 @@ Proof.
                                                        | eapply IHr; [exact H2 | | exact HP | exact Ip | exact Hp]]; lra.
   - rewrite !andb_true_iff in H. destruct H as [_ [H1 H2]]. rewrite <- (firstn_skipn k ps) in Ip. apply in_app_or in Ip.
     destruct Ip as [I|I]; [eapply IHl | eapply IHr]; eassumption.
-  - rewrite !andb_true_iff in H. destruct H as [_ [H1 H2]]. intros F G HF HG x y o o' Io Co Io' Co'.
-    rewrite <- (firstn_skipn k os) in Io. apply in_app_or in Io.
-    destruct Io as [I|I]; [eapply IHl | eapply IHr]; eassumption.
-  - destruct ps as [|p' [|]]; try discriminate. rewrite !andb_true_iff in H. destruct H as [_ [H1 H2]].
-    destruct Ip as [->|[]]. intros F G HF HG x y o o' Io Co Io' Co'.
-    rewrite <- (firstn_skipn k (p_pieces p)) in Io'. apply in_app_or in Io'. destruct Io' as [I|I].
-    + exact (IHl _ _ _ _ H1 t P _ Ht HP (or_introl eq_refl) Hp F G HF HG x y o o' Io Co I Co').
-    + exact (IHr _ _ _ _ H2 t P _ Ht HP (or_introl eq_refl) Hp F G HF HG x y o o' Io Co I Co').
+  - destruct (split k os) as [[x y]|] eqn:E; [|discriminate]. apply andb_true_iff in H. destruct H as [H1 H2].
+    intros F G HF HG x' y' o o' Io Co Io' Co'.
+    destruct (split_has _ _ _ _ _ E Io) as [I|I]; [eapply IHl | eapply IHr]; eassumption.
+  - destruct ps as [|p' [|]]; try discriminate. destruct Ip as [->|[]].
+    destruct (split k (p_pieces p)) as [[x y]|] eqn:E; [|discriminate]. apply andb_true_iff in H. destruct H as [H1 H2].
+    intros F G HF HG x' y' o o' Io Co Io' Co'. destruct (split_has _ _ _ _ _ E Io') as [I|I].
+    + exact (IHl _ _ _ _ H1 t P _ Ht HP (or_introl eq_refl) Hp F G HF HG x' y' o o' Io Co I Co').
+    + exact (IHr _ _ _ _ H2 t P _ Ht HP (or_introl eq_refl) Hp F G HF HG x' y' o o' Io Co I Co').
 Qed.
 
 Lemma margin_up_ok a b : margin w m a b <= V (margin_up w m a b).
@@ -242,6 +248,7 @@ Proof.
   pose proof (ignored_until_ok pc i j t (proj1 Ht) HI) as HF.
   rewrite <- V_0 in Ht. pose proof (check_ok pc _ nd _ _ _ _ H t P _ Ht HP Ip HF) as K.
   destruct (outlines_cover _ _ Ix) as (o & Io & Co). destruct (outlines_cover _ _ Iy) as (o' & Io' & Co').
+  apply forest_of_has in Io, Io'.
   assert (N : norm (sub (P (body_frame a) (A x')) (P (body_frame b) (B y'))) =
               norm (sub (P (body_frame b) (B y')) (P (body_frame a) (A x')))).
   { unfold norm. f_equal. unfold dot, sub, add, scale; cbn [vx vy vz]. ring. }
@@ -443,7 +450,7 @@ Qed.
 
 Theorem accepts_sound w m nodes : accepts w m nodes = true -> claim w m.
 Proof.
-  unfold accepts. rewrite !andb_true_iff. intros [[[[HW HM] HR] HJ] H].
+  unfold accepts, accepts_prepared, prepare_world. rewrite !andb_true_iff. intros [[[[HW HM] HR] HJ] H].
   pose proof (is_well_formed_ok w HW) as WF.
   split.
   { exact (is_meaningful_ok w m WF HM). }

@@ -55,7 +55,7 @@ let fault w m =
   else if not (pieces_join w m.pieces) then "the motion jumps between two pieces"
   else "some pair is not shown to be apart"
 
-let verdict (known : Read.known) hash limit (motion, proof) =
+let verdict (known : Read.known) prepared hash limit (motion, proof) =
   let w = known.w in
   try
     Big.left := max_int;
@@ -67,7 +67,7 @@ let verdict (known : Read.known) hash limit (motion, proof) =
     else
       let n = pairs w m in
       if n = 0 then Not_proven "nothing is checked: the claim is about no pair of bodies"
-      else if not (accepts w m roots) then Not_proven (fault w m)
+      else if not (accepts_prepared prepared w m roots) then Not_proven (fault w m)
       else
         match contact with
         | None -> Proven (n, Nothing)
@@ -152,9 +152,9 @@ let command () =
 let () =
   let asked = command () in
   let proven = ref 0 and all = ref 0 and bad = ref false in
-  let one known hash path alone k record =
+  let one known prepared hash path alone k record =
     let begun = Sys.time () in
-    let v = verdict known hash asked.work record in
+    let v = verdict known prepared hash asked.work record in
     let seconds = Sys.time () -. begun in
     incr all;
     (match v with Proven _ -> incr proven | Not_proven _ -> () | Bad _ -> bad := true);
@@ -170,11 +170,12 @@ let () =
      let text = contents (List.hd asked.files) in
      let hash = Sha256.hex (Sha256.of_string text) in
      let known = Read.world text in
+     let prepared = prepare_world known.w in
      List.iter
        (fun path ->
          let records = Read.records (contents path) in
          if records = [] then fail ("'" ^ path ^ "' has no record: nothing is proven");
-         List.iteri (one known hash path (List.compare_length_with records 1 = 0)) records)
+         List.iteri (one known prepared hash path (List.compare_length_with records 1 = 0)) records)
        (List.tl asked.files)
    with
   | Read.Bad_input why -> fail why
