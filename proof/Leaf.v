@@ -734,10 +734,43 @@ Definition shown (fs : tree) (known : list (nat * func)) (sd : side) (l : Z) (ua
       end
   end.
 
-(** The partners that are not shown to be apart from pieces [os] of A over [a, b]. *)
-Definition not_shown (sfs : list sframe) (q : spiece) (A : sbody) (os : forest) (n : line)
-    (ps : list partner) (a b : Z) : list partner :=
-  let fs := tree_at sfs q a b in
+(** Poses are computed when they are first asked for, and kept: leaves ask for the same intervals of time. (A coinductive
+    value is lazy in OCaml. In the proofs it is what it will be.) Intervals are kept down to a depth, for memory's sake. *)
+CoInductive delayed := Delayed (fs : tree).
+CoInductive poses := Poses (now : delayed) (halves : option (poses * poses)).
+
+Definition middle (a b : Z) : Z := ((a + b) / 2)%Z.
+CoFixpoint poses_from (depth : nat) (sfs : list sframe) (q : spiece) (a b : Z) : poses :=
+  Poses (Delayed (tree_at sfs q a b))
+    match depth with
+    | O => None
+    | S d => Some (poses_from d sfs q a (middle a b), poses_from d sfs q (middle a b) b)
+    end.
+
+Definition now (ts : poses) : tree := match ts with Poses (Delayed fs) _ => fs end.
+Definition halves (sfs : list sframe) (q : spiece) (ts : poses) (a b : Z) : poses * poses :=
+  match ts with
+  | Poses _ (Some both) => both
+  | Poses _ None => (poses_from 0 sfs q a (middle a b), poses_from 0 sfs q (middle a b) b)
+  end.
+
+(** Some 20,000 poses. *)
+Definition kept_depth (sfs : list sframe) : nat := Z.to_nat (Z.log2 (20000 / (Z.of_nat (length sfs) + 1))).
+
+Definition same (ts : poses) : poses := match ts with Poses x y => Poses x y end.
+Lemma same_is ts : ts = same ts.
+Proof. destruct ts. reflexivity. Qed.
+
+Lemma now_is d sfs q a b : now (poses_from d sfs q a b) = tree_at sfs q a b.
+Proof. rewrite (same_is (poses_from d sfs q a b)). destruct d; reflexivity. Qed.
+Lemma halves_are d sfs q a b : exists e,
+  halves sfs q (poses_from d sfs q a b) a b = (poses_from e sfs q a (middle a b), poses_from e sfs q (middle a b) b).
+Proof.
+  rewrite (same_is (poses_from d sfs q a b)). destruct d as [|d]; [exists O | exists d]; reflexivity.
+Qed.
+
+(** The partners that are not shown to be apart from pieces [os] of A. *)
+Definition not_shown (fs : tree) (A : sbody) (os : forest) (n : line) (ps : list partner) : list partner :=
   let known := chain (length fs) fs (l_frame n) (l_func n) in
   match at_frame (length fs) fs known (sb_frame A) with
   | None => ps
@@ -747,17 +780,21 @@ Definition not_shown (sfs : list sframe) (q : spiece) (A : sbody) (os : forest) 
       filter (fun p => negb (shown fs known (l_side n) l ua p)) ps
   end.
 
-(** Time is halved for those that are left, [fuel] times. *)
+(** Over [a, b], of which [ts] are the poses. Time is halved for those that are left, [fuel] times. *)
 Fixpoint separated (fuel : nat) (sfs : list sframe) (q : spiece) (A : sbody) (os : forest) (n : line)
-    (ps : list partner) (a b : Z) : bool :=
-  match not_shown sfs q A os n ps a b with
+    (ps : list partner) (a b : Z) (ts : poses) : bool :=
+  match ps with
   | [] => true
-  | again =>
-      match fuel with
-      | O => false
-      | S k =>
-          let c := ((a + b) / 2)%Z in
-          separated k sfs q A os n again a c && separated k sfs q A os n again c b
+  | _ =>
+      match not_shown (now ts) A os n ps with
+      | [] => true
+      | again =>
+          match fuel with
+          | O => false
+          | S k =>
+              let (first, second) := halves sfs q ts a b in
+              separated k sfs q A os n again a (middle a b) first && separated k sfs q A os n again (middle a b) b second
+          end
       end
   end.
 
@@ -858,7 +895,7 @@ Proof. unfold tree_at, tree_of, sfs. rewrite !map_length. reflexivity. Qed.
 
 Lemma not_shown_ok A os n ps a b t P p : (l_frame n <= length (frames w))%nat -> line_ok n A os p ->
   V a <= t <= V b -> frames_at w (at_time pc t) P -> In p ps ->
-  In p (not_shown sfs q A os n ps a b) \/ keeps P A os p.
+  In p (not_shown (tree_at sfs q a b) A os n ps) \/ keeps P A os p.
 Proof.
   intros Hn LO Ht HP Ip. unfold not_shown. set (fs := tree_at sfs q a b).
   set (known := chain (length fs) fs (l_frame n) (l_func n)). set (l := length_up (fv (l_func n))).
@@ -915,15 +952,17 @@ Proof.
 Qed.
 
 Theorem separated_ok fuel A os n : (l_frame n <= length (frames w))%nat ->
-  forall ps a b, separated fuel sfs q A os n ps a b = true ->
+  forall ps a b d, separated fuel sfs q A os n ps a b (poses_from d sfs q a b) = true ->
   forall t P p, line_ok n A os p -> V a <= t <= V b -> frames_at w (at_time pc t) P -> In p ps -> keeps P A os p.
 Proof.
-  intros Hn. induction fuel as [|k IH]; intros ps a b H t P p LO Ht HP Ip;
-    destruct (not_shown_ok A os n ps a b t P p Hn LO Ht HP Ip) as [I|K]; auto; cbn [separated] in H;
-    destruct (not_shown sfs q A os n ps a b) as [|p' again]; try (destruct I; fail); try discriminate.
+  intros Hn. induction fuel as [|k IH]; intros ps a b d H t P p LO Ht HP Ip; cbn [separated] in H;
+    (destruct ps as [|p0 ps0] eqn:EP; [destruct Ip|]; rewrite <- EP in *; clear EP p0 ps0);
+    rewrite now_is in H; destruct (not_shown_ok A os n ps a b t P p Hn LO Ht HP Ip) as [I|K]; auto;
+    destruct (not_shown (tree_at sfs q a b) A os n ps) as [|p' again]; try (destruct I; fail); try discriminate.
+  destruct (halves_are d sfs q a b) as [e E]. rewrite E in H.
   apply andb_true_iff in H. destruct H as [H1 H2].
-  destruct (Rle_lt_dec t (V ((a + b) / 2))) as [L|G]; [eapply IH; [exact H1 | exact LO | | exact HP | exact I]
-                                                     | eapply IH; [exact H2 | exact LO | | exact HP | exact I]]; lra.
+  destruct (Rle_lt_dec t (V (middle a b))) as [L|G]; [eapply IH; [exact H1 | exact LO | | exact HP | exact I]
+                                                    | eapply IH; [exact H2 | exact LO | | exact HP | exact I]]; lra.
 Qed.
 
 End Sound.

@@ -41,30 +41,31 @@ Variable q : spiece.
 Variable A : sbody.
 
 (** Partners that are ignored up to a time take part from then on. *)
-Definition leaf (n : line) (os : forest) (ps : list partner) (a b : Z) : bool :=
+Definition leaf (n : line) (os : forest) (ps : list partner) (a b : Z) (ts : poses) : bool :=
   Nat.leb (l_frame n) (length sfs) &&
-  separated leaf_halvings sfs q A os n (filter (fun p => Z.leb (p_from p) a) ps) a b &&
+  separated leaf_halvings sfs q A os n (filter (fun p => Z.leb (p_from p) a) ps) a b ts &&
   forallb (fun p => Z.leb (p_from p) a || Z.leb b (p_from p) ||
-                    separated leaf_halvings sfs q A os n [p] (p_from p) b) ps.
+                    separated leaf_halvings sfs q A os n [p] (p_from p) b (poses_from 0 sfs q (p_from p) b)) ps.
 
-Fixpoint check (nd : node) (os : forest) (ps : list partner) (a b : Z) : bool :=
+Fixpoint check (nd : node) (os : forest) (ps : list partner) (a b : Z) (ts : poses) : bool :=
   match nd with
-  | Sep where_ x y z => leaf (along (frame_of where_ A ps) x y z) os ps a b
+  | Sep where_ x y z => leaf (along (frame_of where_ A ps) x y z) os ps a b ts
   | AtWall turned =>
       match ps with
-      | [p] => match wall_line A os p turned with Some n => leaf n os ps a b | None => false end
+      | [p] => match wall_line A os p turned with Some n => leaf n os ps a b ts | None => false end
       | _ => false
       end
-  | Time l r => let c := ((a + b) / 2)%Z in check l os ps a c && check r os ps c b
-  | Partners k l r => cuts k (length ps) && (check l os (firstn k ps) a b && check r os (skipn k ps) a b)
-  | Own k l r => match split k os with Some (x, y) => check l x ps a b && check r y ps a b | None => false end
+  | Time l r =>
+      let (first, second) := halves sfs q ts a b in check l os ps a (middle a b) first && check r os ps (middle a b) b second
+  | Partners k l r => cuts k (length ps) && (check l os (firstn k ps) a b ts && check r os (skipn k ps) a b ts)
+  | Own k l r => match split k os with Some (x, y) => check l x ps a b ts && check r y ps a b ts | None => false end
   | Other k l r =>
       match ps with
       | [p] =>
           match split k (p_pieces p) with
           | Some (x, y) =>
-              check l os [Partner (p_body p) x (p_margin p) (p_from p)] a b &&
-              check r os [Partner (p_body p) y (p_margin p) (p_from p)] a b
+              check l os [Partner (p_body p) x (p_margin p) (p_from p)] a b ts &&
+              check r os [Partner (p_body p) y (p_margin p) (p_from p)] a b ts
           | None => false
           end
       | _ => false
@@ -101,18 +102,18 @@ Definition partner_of (w : world) (m : motion) (p : piece) (b a : prepared) : pa
 
 (** One root for each body that has partners before it; the nodes that are left over. *)
 Fixpoint check_bodies (w : world) (m : motion) (sfs : list sframe) (p : piece) (until_up : Z)
-    (before rest : list prepared) (nodes : list node) : option (list node) :=
+    (ts : poses) (before rest : list prepared) (nodes : list node) : option (list node) :=
   match rest with
   | [] => Some nodes
   | b :: rest' =>
       match filter (fun a => checked w m (pr_body a) (pr_body b)) before with
-      | [] => check_bodies w m sfs p until_up (before ++ [b]) rest' nodes
+      | [] => check_bodies w m sfs p until_up ts (before ++ [b]) rest' nodes
       | partners =>
           match nodes with
           | [] => None
           | nd :: nodes' =>
-              if check sfs (spiece_of p) (pr_sbody b) nd (pr_pieces b) (map (partner_of w m p b) partners) 0 until_up
-              then check_bodies w m sfs p until_up (before ++ [b]) rest' nodes'
+              if check sfs (spiece_of p) (pr_sbody b) nd (pr_pieces b) (map (partner_of w m p b) partners) 0 until_up ts
+              then check_bodies w m sfs p until_up ts (before ++ [b]) rest' nodes'
               else None
           end
       end
@@ -124,7 +125,8 @@ Fixpoint check_pieces (w : world) (m : motion) (sfs : list sframe) (bs : list pr
   | [] => Some nodes
   | p :: rest =>
       let until_up := match rest with [] => number_up (until m) | _ => one end in
-      match check_bodies w m sfs p until_up [] bs nodes with
+      let ts := poses_from (kept_depth sfs) sfs (spiece_of p) 0 until_up in
+      match check_bodies w m sfs p until_up ts [] bs nodes with
       | Some nodes' => check_pieces w m sfs bs rest nodes'
       | None => None
       end
@@ -178,29 +180,32 @@ Hypothesis WF : well_formed w.
 Variable m : motion.
 Let sfs := map sframe_of (frames w).
 
-Lemma leaf_ok pc A n os ps a b : leaf sfs (spiece_of pc) A n os ps a b = true ->
-  forall t P p, line_ok n A os p -> V a <= t <= V b -> frames_at w (at_time pc t) P -> In p ps -> V (p_from p) < t ->
+Lemma leaf_ok pc A n os ps a b ts : leaf sfs (spiece_of pc) A n os ps a b ts = true ->
+  (exists d, ts = poses_from d sfs (spiece_of pc) a b) -> forall t P p, line_ok n A os p -> V a <= t <= V b -> frames_at w (at_time pc t) P -> In p ps -> V (p_from p) < t ->
   keeps P A os p.
 Proof.
-  unfold leaf. rewrite !andb_true_iff. intros [[L S1] S2] t P p LO Ht HP Ip Hp. apply Nat.leb_le in L.
+  unfold leaf. rewrite !andb_true_iff. intros [[L S1] S2] [d ->] t P p LO Ht HP Ip Hp. apply Nat.leb_le in L.
   unfold sfs in L. rewrite map_length in L. rewrite forallb_forall in S2. specialize (S2 p Ip).
   rewrite !orb_true_iff in S2. destruct S2 as [[E|E]|E]; [| apply Z.leb_le, V_le in E; lra |].
   - eapply separated_ok; [exact WF | exact L | exact S1 | exact LO | exact Ht | exact HP|]. apply filter_In. split; assumption.
   - eapply separated_ok; [exact WF | exact L | exact E | exact LO | | exact HP | left; reflexivity]. lra.
 Qed.
 
-Lemma check_ok pc A nd : forall os ps a b, check sfs (spiece_of pc) A nd os ps a b = true ->
+Lemma check_ok pc A nd : forall os ps a b ts, check sfs (spiece_of pc) A nd os ps a b ts = true ->
+  (exists d, ts = poses_from d sfs (spiece_of pc) a b) ->
   forall t P p, V a <= t <= V b -> frames_at w (at_time pc t) P -> In p ps -> V (p_from p) < t -> keeps P A os p.
 Proof.
   induction nd as [wh x y z | turned | l IHl r IHr | k l IHl r IHr | k l IHl r IHr | k l IHl r IHr];
-    intros os ps a b H t P p Ht HP Ip Hp; cbn [check] in H.
-  - eapply leaf_ok; [exact H | apply along_ok | exact Ht | exact HP | exact Ip | exact Hp].
+    intros os ps a b ts H TS t P p Ht HP Ip Hp; cbn [check] in H.
+  - eapply leaf_ok; [exact H | exact TS | apply along_ok | exact Ht | exact HP | exact Ip | exact Hp].
   - destruct ps as [|p' [|]]; try discriminate. destruct Ip as [->|[]].
     destruct (wall_line A os p turned) as [n|] eqn:W; [|discriminate].
-    eapply leaf_ok; [exact H | eapply wall_line_ok; exact W | exact Ht | exact HP | left; reflexivity | exact Hp].
-  - apply andb_true_iff in H. destruct H as [H1 H2].
-    destruct (Rle_lt_dec t (V ((a + b) / 2))) as [L|G]; [eapply IHl; [exact H1 | | exact HP | exact Ip | exact Hp]
-                                                       | eapply IHr; [exact H2 | | exact HP | exact Ip | exact Hp]]; lra.
+    eapply leaf_ok; [exact H | exact TS | eapply wall_line_ok; exact W | exact Ht | exact HP | left; reflexivity | exact Hp].
+  - destruct TS as [d ->]. destruct (halves_are d sfs (spiece_of pc) a b) as [e E]. rewrite E in H.
+    apply andb_true_iff in H. destruct H as [H1 H2].
+    destruct (Rle_lt_dec t (V (middle a b))) as [L|G];
+      [eapply IHl; [exact H1 | exists e; reflexivity | | exact HP | exact Ip | exact Hp]
+      | eapply IHr; [exact H2 | exists e; reflexivity | | exact HP | exact Ip | exact Hp]]; lra.
   - rewrite !andb_true_iff in H. destruct H as [_ [H1 H2]]. rewrite <- (firstn_skipn k ps) in Ip. apply in_app_or in Ip.
     destruct Ip as [I|I]; [eapply IHl | eapply IHr]; eassumption.
   - destruct (split k os) as [[x y]|] eqn:E; [|discriminate]. apply andb_true_iff in H. destruct H as [H1 H2].
@@ -209,8 +214,8 @@ Proof.
   - destruct ps as [|p' [|]]; try discriminate. destruct Ip as [->|[]].
     destruct (split k (p_pieces p)) as [[x y]|] eqn:E; [|discriminate]. apply andb_true_iff in H. destruct H as [H1 H2].
     intros F G HF HG x' y' o o' Io Co Io' Co'. destruct (split_has _ _ _ _ _ E Io') as [I|I].
-    + exact (IHl _ _ _ _ H1 t P _ Ht HP (or_introl eq_refl) Hp F G HF HG x' y' o o' Io Co I Co').
-    + exact (IHr _ _ _ _ H2 t P _ Ht HP (or_introl eq_refl) Hp F G HF HG x' y' o o' Io Co I Co').
+    + exact (IHl _ _ _ _ _ H1 TS t P _ Ht HP (or_introl eq_refl) Hp F G HF HG x' y' o o' Io Co I Co').
+    + exact (IHr _ _ _ _ _ H2 TS t P _ Ht HP (or_introl eq_refl) Hp F G HF HG x' y' o o' Io Co I Co').
 Qed.
 
 Lemma margin_up_ok a b : margin w m a b <= V (margin_up w m a b).
@@ -236,17 +241,18 @@ Proof.
 Qed.
 
 (** What one root shows. *)
-Lemma root_ok pc u nd i j (a b : body) (before : list prepared) t : In (prepare i a) before -> checked w m a b = true ->
+Lemma root_ok pc u ts nd i j (a b : body) (before : list prepared) t : In (prepare i a) before -> checked w m a b = true ->
   check sfs (spiece_of pc) (pr_sbody (prepare j b)) nd (pr_pieces (prepare j b))
-    (map (partner_of w m pc (prepare j b)) (filter (fun p => checked w m (pr_body p) b) before)) 0 u = true ->
+    (map (partner_of w m pc (prepare j b)) (filter (fun p => checked w m (pr_body p) b) before)) 0 u ts = true ->
+  (exists d, ts = poses_from d sfs (spiece_of pc) 0 u) ->
   0 <= t <= V u -> (forall v, In (i, j, v) (ignored pc) -> real v < t) -> apart w m (at_time pc t) a b.
 Proof.
-  intros Ia C H Ht HI P A B HP HA HB x y (x' & Ix & ->) (y' & Iy & ->).
+  intros Ia C H TS Ht HI P A B HP HA HB x y (x' & Ix & ->) (y' & Iy & ->).
   assert (Ip : In (partner_of w m pc (prepare j b) (prepare i a))
     (map (partner_of w m pc (prepare j b)) (filter (fun p => checked w m (pr_body p) b) before))).
   { apply in_map. apply filter_In. split; [exact Ia | exact C]. }
   pose proof (ignored_until_ok pc i j t (proj1 Ht) HI) as HF.
-  rewrite <- V_0 in Ht. pose proof (check_ok pc _ nd _ _ _ _ H t P _ Ht HP Ip HF) as K.
+  rewrite <- V_0 in Ht. pose proof (check_ok pc _ nd _ _ _ _ _ H TS t P _ Ht HP Ip HF) as K.
   destruct (outlines_cover _ _ Ix) as (o & Io & Co). destruct (outlines_cover _ _ Iy) as (o' & Io' & Co').
   apply forest_of_has in Io, Io'.
   assert (N : norm (sub (P (body_frame a) (A x')) (P (body_frame b) (B y'))) =
@@ -257,14 +263,14 @@ Proof.
 Qed.
 
 (** All pairs of [rest], whose numbers begin with n, with what stands before them. *)
-Lemma check_bodies_ok pc u rest : forall n before nodes left,
-  check_bodies w m sfs pc u before (prepare_all n rest) nodes = Some left ->
+Lemma check_bodies_ok pc u ts rest : (exists d, ts = poses_from d sfs (spiece_of pc) 0 u) ->
+  forall n before nodes left, check_bodies w m sfs pc u ts before (prepare_all n rest) nodes = Some left ->
   forall k b i a t, nth_error rest k = Some b ->
   In (prepare i a) before \/ (exists k', (k' < k)%nat /\ nth_error rest k' = Some a /\ i = (n + k')%nat) ->
   checked w m a b = true -> 0 <= t <= V u -> (forall v, In (i, (n + k)%nat, v) (ignored pc) -> real v < t) ->
   apart w m (at_time pc t) a b.
 Proof.
-  induction rest as [|c rest IH]; intros n before nodes left H k b i a t Nb Ia C Ht HI.
+  intros TS. induction rest as [|c rest IH]; intros n before nodes left H k b i a t Nb Ia C Ht HI.
   - destruct k; discriminate.
   - cbn [prepare_all check_bodies] in H.
     set (found := filter (fun p => checked w m (pr_body p) (pr_body (prepare n c))) before) in *.
@@ -273,11 +279,11 @@ Proof.
       destruct found as [|p ps] eqn:F.
       * assert (I : In (prepare i a) found) by (apply filter_In; split; [exact Ia | exact C]). rewrite F in I. destruct I.
       * destruct nodes as [|nd nodes']; [discriminate|].
-        destruct (check sfs _ _ nd _ _ 0 u) eqn:K; [|discriminate].
-        apply (root_ok pc u nd i n a b before t Ia C); [|exact Ht | exact HI].
+        destruct (check sfs _ _ nd _ _ 0 u ts) eqn:K; [|discriminate].
+        apply (root_ok pc u ts nd i n a b before t Ia C); [|exact TS | exact Ht | exact HI].
         change (filter (fun p => checked w m (pr_body p) b) before) with found. rewrite F. exact K.
     + cbn [nth_error] in Nb.
-      assert (LATER : forall nodes', check_bodies w m sfs pc u (before ++ [prepare n c])
+      assert (LATER : forall nodes', check_bodies w m sfs pc u ts (before ++ [prepare n c])
         (prepare_all (S n) rest) nodes' = Some left -> apart w m (at_time pc t) a b).
       { intros nodes' H'. replace (n + S k)%nat with (S n + k)%nat in HI by lia.
         apply (IH _ _ _ _ H' k b i a t Nb); [|exact C | exact Ht | exact HI].
@@ -287,19 +293,20 @@ Proof.
         - right. exists k'. split; [lia|]. split; [exact Na | lia]. }
       destruct found as [|p ps]; [exact (LATER _ H)|].
       destruct nodes as [|nd nodes']; [discriminate|].
-      destruct (check sfs _ _ nd _ _ 0 u); [|discriminate]. exact (LATER _ H).
+      destruct (check sfs _ _ nd _ _ 0 u ts); [|discriminate]. exact (LATER _ H).
 Qed.
 
 Lemma check_pieces_ok ps : forall nodes left,
   check_pieces w m sfs (prepare_all 0 (bodies w)) ps nodes = Some left ->
   forall k p, nth_error ps k = Some p ->
-  exists nodes' left', check_bodies w m sfs p
-    (if Nat.eqb (S k) (length ps) then number_up (until m) else one) [] (prepare_all 0 (bodies w)) nodes' = Some left'.
+  let u := if Nat.eqb (S k) (length ps) then number_up (until m) else one in
+  exists nodes' left', check_bodies w m sfs p u (poses_from (kept_depth sfs) sfs (spiece_of p) 0 u) []
+    (prepare_all 0 (bodies w)) nodes' = Some left'.
 Proof.
   induction ps as [|p0 rest IH]; intros nodes left H k p N; [destruct k; discriminate|]. cbn [check_pieces] in H.
-  destruct (check_bodies w m sfs p0 _ [] _ nodes) as [nodes1|] eqn:B; [|discriminate].
+  destruct (check_bodies w m sfs p0 _ _ [] _ nodes) as [nodes1|] eqn:B; [|discriminate].
   destruct k as [|k].
-  - cbn in N. injection N as <-. exists nodes, nodes1. rewrite <- B. f_equal. destruct rest; reflexivity.
+  - cbn in N. injection N as <-. exists nodes, nodes1. rewrite <- B. destruct rest; reflexivity.
   - cbn [nth_error] in N. destruct (IH _ _ H k p N) as (n' & l' & E). exists n', l'. exact E.
 Qed.
 
@@ -460,7 +467,7 @@ Proof.
   destruct (check_pieces w m (map sframe_of (frames w)) (prepare_all 0 (bodies w)) (pieces m) nodes) as [left|] eqn:K;
     [|discriminate]. clear H.
   destruct (check_pieces_ok w m _ _ _ K k p Np) as (nodes' & left' & B).
-  apply (check_bodies_ok w WF m p _ (bodies w) 0 [] nodes' left' B j b i a t Nb); [|exact C | | exact HI].
+  apply (check_bodies_ok w WF m p _ _ (bodies w) ltac:(eexists; reflexivity) 0 [] nodes' left' B j b i a t Nb); [|exact C | | exact HI].
   - right. exists i. split; [exact Hij|]. split; [exact Na | reflexivity].
   - destruct Ht as [H0 H1]. split; [exact H0|]. eapply Rle_trans; [exact H1|]. unfold ends.
     destruct (Nat.eqb (S k) (length (pieces m))); [apply number_up_ok | rewrite V_one; lra].
