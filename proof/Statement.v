@@ -1,9 +1,8 @@
 (* SPDX-License-Identifier: BSD-3-Clause *)
 (** * What is claimed of a world and a motion
 
-    This file is to be read by people: it is all that the theorem at the end of Walk.v is about. It says in real numbers
-    what doc/CERTIFICATES.md, "What is claimed", says in words, for the part that doc/PROVEN_CHECKER.md names: frames
-    that turn and slide, points with radius, margins, allowed pairs. Nothing here computes. *)
+    This file is to be read by people: it is all that the theorems at the end of Walk.v are about. It says in real numbers
+    what doc/CERTIFICATES.md, "What is claimed", says in words, for all but solids. *)
 From Coq Require Import Reals ZArith String Bool List.
 Import ListNotations.
 Open Scope R_scope.
