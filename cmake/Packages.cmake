@@ -5,7 +5,7 @@ if(NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr" OR NOT BUILD_SHARED_LIBS)
   message(FATAL_ERROR "FCL_ARTIC_PACKAGES wants CMAKE_INSTALL_PREFIX=/usr and shared libraries, as the preset `package` sets them")
 endif()
 foreach(target fcl_artic_urdf fcl_artic_visibility fcl_artic_ompl fcl_artic_program fcl_artic_mpi fcl_artic_verify
-    fcl_artic_python)
+    fcl_artic_prove fcl_artic_python)
   if(NOT TARGET ${target})
     message(FATAL_ERROR "FCL_ARTIC_PACKAGES: ${target} is not built; scripts/setup installs what it needs")
   endif()
@@ -15,13 +15,14 @@ set(fcl_artic_library_package libfcl-artic${PROJECT_VERSION_MAJOR})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME ${fcl_artic_library_package})
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libfcl-artic-dev)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME fcl-artic)
+set(CPACK_DEBIAN_PROVER_PACKAGE_NAME fcl-artic-prove)
 set(CPACK_DEBIAN_MPI_PACKAGE_NAME fcl-artic-mpi)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-fcl-artic)
 set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_NAME fcl-artic-doc)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_COMPONENTS_ALL library development program mpi python documentation)
+set(CPACK_COMPONENTS_ALL library development program prover mpi python documentation)
 set(CPACK_PACKAGE_NAME fcl-artic)
 set(CPACK_PACKAGE_VENDOR "the fcl_artic authors")
 set(CPACK_PACKAGE_CONTACT "The fcl_artic maintainers <fcl_artic@example.org>")  # as in package.xml
@@ -72,6 +73,12 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${fcl_artic_library_package} (${fcl_artic_same_version})")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "fcl-artic-doc, fcl-artic-mpi")
+
+fcl_artic_describe(PROVER "proven checker" "This package has the program fcl_artic_prove, which checks certificates by a
+checker that is proven in Coq. It needs none of the other packages.")
+set(CPACK_DEBIAN_PROVER_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROVER_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROVER_PACKAGE_SUGGESTS "fcl-artic, fcl-artic-doc")
 
 fcl_artic_describe(MPI "MPI" "This package has the program's plug-in for MPI, with which the ranks of a job
 certify many motions in many scenes together.")

@@ -80,17 +80,21 @@ Qed.
 
 (** ** Poses *)
 
-Definition placed (p : stated_pose) : step :=
-  let row r := twiden (tm_point r) (2 ^ 15) in
-  Placed (row (r1 p)) (row (r2 p)) (row (r3 p)) (tm_point (shift p)).
+Definition rotated (a b c : numbers3) (p : tvec) : step :=
+  let row r := twiden (tm_point r) (2 ^ 15) in Placed (row a) (row b) (row c) p.
+Definition placed (p : stated_pose) : step := rotated (r1 p) (r2 p) (r3 p) (tm_point (shift p)).
+
+Lemma rotated_ok s a b c m pm p M : rotation_means a b c m -> holdsv pm s p -> (forall x, M x = add (apply m x) p) ->
+  holds_step s (rotated a b c pm) M.
+Proof.
+  intros (R & N1 & N2 & N3) Hp E.
+  assert (E49 : / 2 ^ 49 <= V (2 ^ 15)) by (pose proof (power_neg 49 ltac:(lia)) as K; apply Req_le; exact K).
+  apply holds_placed with (m := m) (p := p); try exact R; try exact E; try exact Hp;
+    (eapply holdsv_widen; [apply holdsv_point | eassumption | exact E49]).
+Qed.
 
 Lemma placed_ok s p M : pose_map p M -> holds_step s (placed p) M.
-Proof.
-  intros [m R N1 N2 N3].
-  assert (E : / 2 ^ 49 <= V (2 ^ 15)) by (pose proof (power_neg 49 ltac:(lia)) as E; apply Req_le; exact E).
-  apply holds_placed with (m := m) (p := point (shift p)); try exact R; try (intros; reflexivity);
-    try apply holdsv_point; (eapply holdsv_widen; [apply holdsv_point | eassumption | exact E]).
-Qed.
+Proof. intros [m R]. eapply rotated_ok; [exact R | apply holdsv_point | reflexivity]. Qed.
 
 (** ** Axes
 
@@ -267,9 +271,15 @@ Proof.
   apply holds_add; [apply holds_number|]. apply holds_mul; assumption.
 Qed.
 
-Definition spiece := list (list tm).
-Definition spiece_of (p : piece) : spiece := map (map tm_number) (polynomials p).
-Definition variables (p : spiece) (a b : Z) : list tm := let t := time_tm a b in map (fun cs => polynomial_tm cs t) p.
+Definition start_of (o : nat * (numbers3 * numbers3 * numbers3)) : nat * step :=
+  let '(v, (a, b, c)) := o in (v, rotated a b c (Tvec tm_zero tm_zero tm_zero)).
+Record spiece := Spiece { s_values : list (list tm); s_starts : list (nat * step) }.
+Definition spiece_of (p : piece) : spiece :=
+  Spiece (map (map tm_number) (polynomials p)) (map start_of (orientations p)).
+
+(** The values of the variables, and where rotations begin. *)
+Record sstate := Sstate { x_amount : list tm; x_start : list (nat * step) }.
+Definition state_at (p : spiece) (t : tm) : sstate := Sstate (map (fun cs => polynomial_tm cs t) (s_values p)) (s_starts p).
 
 (** The value of a variable at one time. *)
 Definition value_tm (p : piece) (t : Z) (v : nat) : tm :=
@@ -277,50 +287,123 @@ Definition value_tm (p : piece) (t : Z) (v : nat) : tm :=
 Lemma value_ok p t v : holds (value_tm p t v) 0 (value p (V t) v).
 Proof. apply polynomial_ok; [rewrite Rabs_R0; lra | apply holds_exact]. Qed.
 
-Lemma variables_ok s p a b t v : Rabs s <= 1 -> holds (time_tm a b) s t ->
-  holds (nth v (variables (spiece_of p) a b) tm_zero) s (value p t v).
+Definition starts (x : sstate) (v : nat) : list step :=
+  match find (fun o => Nat.eqb (fst o) v) (x_start x) with Some o => [snd o] | None => [] end.
+
+Definition holds_state (x : sstate) (s : R) (q : state) : Prop :=
+  (forall v, holds (nth v (x_amount x) tm_zero) s (amount q v)) /\
+  (forall v S, start_map (start q v) S -> holds_steps s (starts x v) S).
+
+Lemma state_ok s p tmodel t : Rabs s <= 1 -> holds tmodel s t -> holds_state (state_at (spiece_of p) tmodel) s (at_time p t).
 Proof.
-  intros Hs Ht. unfold variables, spiece_of, value. rewrite map_map.
-  change tm_zero with ((fun cs => polynomial_tm (map tm_number cs) (time_tm a b)) []).
-  rewrite map_nth. apply polynomial_ok; assumption.
+  intros Hs Ht. split.
+  - intros v. unfold state_at, spiece_of, at_time, value; cbn [x_amount amount s_values]. rewrite map_map.
+    change tm_zero with ((fun cs => polynomial_tm (map tm_number cs) tmodel) []).
+    rewrite map_nth. apply polynomial_ok; assumption.
+  - intros v S. unfold starts, state_at, spiece_of, at_time, orientation; cbn [x_start start s_starts].
+    induction (orientations p) as [|[u [[a b] c]] os IH]; cbn [map find fst snd start_of option_map].
+    + intros H. apply no_step. exact H.
+    + destruct (Nat.eqb u v); [|exact IH]. cbn [option_map snd start_map]. intros (m & R & E).
+      apply first_step with (E := S) (M := fun x => x); [|apply no_step; reflexivity | reflexivity].
+      eapply rotated_ok with (p := Vec 0 0 0); [exact R | repeat split; apply holds_zero|].
+      intros x. rewrite E. destruct (apply m x) as [e f g]. unfold add; cbn [vx vy vz]. f_equal; ring.
+Qed.
+
+(** A rotation vector as a step. *)
+Definition spin (w : tvec) : step :=
+  match half_parts (tdot w w) with
+  | Some (a, c) => Spun (tscale a w) c
+  | None => let any := const 0 one in Spun (Tvec any any any) any
+  end.
+
+Lemma rotate_is_spun w x : rotate w x = spun (scale (sin_part (norm w) 1) w) (cos_part (norm w) 1) x.
+Proof.
+  assert (S : norm w * norm w = dot w w) by (apply sqrt_sqrt; unfold dot; nra).
+  unfold rotate, sin_part, cos_part. destruct (Req_EM_T (norm w) 0) as [Z0|N].
+  - rewrite Z0 in *. assert (w = Vec 0 0 0) as ->.
+    { destruct w as [a b c]. unfold dot in S; cbn in S. assert (a = 0 /\ b = 0 /\ c = 0) as (-> & -> & ->); [|reflexivity].
+      repeat split; nra. }
+    replace (0 / 2 ^ 1) with 0 by field. unfold turn. rewrite cos_0, sin_0. destruct x as [x y z].
+    unfold turn, spun, scale, cross, add, dot; cbn [vx vy vz]. f_equal; ring.
+  - set (r := norm w) in *. rewrite pow_1. replace r with (2 * (r / 2)) at 2 by field. set (h := r / 2).
+    pose proof (sin2_cos2 h) as SC. unfold Rsqr in SC. unfold turn. rewrite cos_2a_cos, sin_2a.
+    replace (1 - (2 * cos h * cos h - 1)) with (2 * (sin h * sin h)) by lra.
+    destruct w as [a b c], x as [x y z]. unfold spun, scale, cross, add, dot; cbn [vx vy vz]. f_equal; field; exact N.
+Qed.
+
+Lemma half_parts_square w : cos_part (norm w) 1 * cos_part (norm w) 1 +
+  dot (scale (sin_part (norm w) 1) w) (scale (sin_part (norm w) 1) w) = 1.
+Proof.
+  assert (S : norm w * norm w = dot w w) by (apply sqrt_sqrt; unfold dot; nra).
+  replace (dot (scale _ w) _) with (sin_part (norm w) 1 * sin_part (norm w) 1 * (norm w * norm w))
+    by (rewrite S; unfold dot, scale; cbn [vx vy vz]; ring).
+  pose proof (parts_double (norm w) 0) as [_ E]. pose proof (sin2_cos2 (norm w / 2)) as SC. unfold Rsqr in SC.
+  unfold sin_part, cos_part in *. rewrite pow_1. destruct (Req_EM_T (norm w) 0) as [Z0|N].
+  - rewrite Z0. replace (0 / 2) with 0 by field. rewrite cos_0. ring.
+  - rewrite <- SC. clear E. field. exact N.
+Qed.
+
+Lemma spin_ok s w wv : Rabs s <= 1 -> holdsv w s wv -> holds_step s (spin w) (rotate wv).
+Proof.
+  intros Hs Hw. assert (S : norm wv * norm wv = dot wv wv) by (apply sqrt_sqrt; unfold dot; nra).
+  pose proof (half_parts_square wv) as Q.
+  assert (Hz : holds (tdot w w) s (norm wv * norm wv)) by (rewrite S; apply holds_dot; assumption).
+  unfold spin. destruct (half_parts (tdot w w)) as [[a c]|] eqn:H.
+  - destruct (half_parts_holds s (norm wv) _ _ (sqrt_pos _) Hs Hz H) as [Ha Hc]. cbn [fst snd] in *.
+    eapply holds_spun; [apply holdsv_scale; [exact Hs | exact Ha | exact Hw] | exact Hc | exact Q | apply rotate_is_spun].
+  - set (u := scale (sin_part (norm wv) 1) wv) in *. set (k := cos_part (norm wv) 1) in *.
+    assert (A : forall x, x * x <= 1 -> holds (const 0 one) s x).
+    { intros x Hx. apply holds_const. rewrite V_0, V_one, Rminus_0_r. apply Rabs_le. nra. }
+    unfold dot in Q. apply holds_spun with (u := u) (c := k);
+      [repeat split; cbn [tx ty tz]; apply A; nra | apply A; nra | unfold dot; exact Q | apply rotate_is_spun].
 Qed.
 
 (** An element, prepared. *)
 Inductive selement :=
   | STurn (k : tvec) (v : nat) (m c : tm)
-  | SSlide (k : tvec) (v : nat) (m c : tm).
+  | SSlide (k : tvec) (v : nat) (m c : tm)
+  | SRotate (v : nat).
 Definition selement_of (e : element) : selement :=
   match e with
   | Turn a v m c => STurn (axis_tm a) v (tm_number m) (tm_number c)
   | Slide a v m c => SSlide (axis_tm a) v (tm_number m) (tm_number c)
+  | Rotate v => SRotate v
   end.
-Definition step_of (vars : list tm) (e : selement) : step :=
-  let amount v m c := tm_add (tm_mul m (nth v vars tm_zero)) c in
+Definition steps_of (x : sstate) (e : selement) : list step :=
+  let q v := nth v (x_amount x) tm_zero in
   match e with
-  | STurn k v m c => let (sn, cs) := sincos (amount v m c) in Turned k sn cs
-  | SSlide k v m c => Slid k (amount v m c)
+  | STurn k v m c => let (sn, cs) := sincos (tm_add (tm_mul m (q v)) c) in [Turned k sn cs]
+  | SSlide k v m c => [Slid k (tm_add (tm_mul m (q v)) c)]
+  | SRotate v => spin (Tvec (q v) (q (v + 1)%nat) (q (v + 2)%nat)) :: starts x v
   end.
 
-Lemma step_of_ok s q vars e M : Rabs s <= 1 -> (forall v, holds (nth v vars tm_zero) s (q v)) ->
-  element_map q e M -> holds_step s (step_of vars (selement_of e)) M.
+Lemma steps_of_ok s q x e M N sts : Rabs s <= 1 -> holds_state x s q -> element_map q e M -> holds_steps s sts N ->
+  holds_steps s (steps_of x (selement_of e) ++ sts) (fun y => M (N y)).
 Proof.
-  intros Hs Hq [a k v m c AM | a k v m c AM]; cbn [selement_of step_of];
-    (assert (H : holds (tm_add (tm_mul (tm_number m) (nth v vars tm_zero)) (tm_number c)) s (real m * q v + real c))
-      by (apply holds_add; [apply holds_mul; [exact Hs | apply holds_number | apply Hq] | apply holds_number])).
-  - pose proof (sincos_holds s _ _ Hs H) as SC. destruct (sincos _) as [sn cs]. cbn [fst snd] in SC. destruct SC as [S C].
-    apply holds_turned with (k := k) (sn := sin (real m * q v + real c)) (cs := cos (real m * q v + real c)); auto.
+  intros Hs [Hq Hx] [a k v m c AM | a k v m c AM | v S HS] HN; cbn [selement_of steps_of].
+  - assert (H : holds (tm_add (tm_mul (tm_number m) (nth v (x_amount x) tm_zero)) (tm_number c)) s (real m * amount q v + real c))
+      by (apply holds_add; [apply holds_mul; [exact Hs | apply holds_number | apply Hq] | apply holds_number]).
+    pose proof (sincos_holds s _ _ Hs H) as SC. destruct (sincos _) as [sn cs]. cbn [fst snd] in SC. destruct SC as [S C].
+    cbn [app]. eapply first_step; [|exact HN | reflexivity].
+    apply holds_turned with (k := k) (sn := sin (real m * amount q v + real c)) (cs := cos (real m * amount q v + real c)); auto.
     + apply axis_ok. exact AM.
     + apply AM.
-    + rewrite <- (sin2_cos2 (real m * q v + real c)). reflexivity.
-  - apply holds_slid with (k := k) (way := real m * q v + real c); auto. apply axis_ok. exact AM.
+    + rewrite <- (sin2_cos2 (real m * amount q v + real c)). reflexivity.
+  - assert (H : holds (tm_add (tm_mul (tm_number m) (nth v (x_amount x) tm_zero)) (tm_number c)) s (real m * amount q v + real c))
+      by (apply holds_add; [apply holds_mul; [exact Hs | apply holds_number | apply Hq] | apply holds_number]).
+    cbn [app]. eapply first_step with (E := fun y => add y (scale (real m * amount q v + real c) k)); [|exact HN | reflexivity].
+    apply holds_slid with (k := k) (way := real m * amount q v + real c); auto. apply axis_ok. exact AM.
+  - cbn [app]. eapply first_step with (E := rotate (Vec (amount q v) (amount q (v + 1)) (amount q (v + 2)))) (M := fun y => S (N y));
+      [apply spin_ok; [exact Hs | repeat split; apply Hq] | | reflexivity].
+    apply steps_app; [apply Hx; exact HS | exact HN].
 Qed.
 
-Lemma steps_of_ok s q vars es M : Rabs s <= 1 -> (forall v, holds (nth v vars tm_zero) s (q v)) ->
-  elements_map q es M -> holds_steps s (map (step_of vars) (map selement_of es)) M.
+Lemma all_steps_ok s q x es M : Rabs s <= 1 -> holds_state x s q -> elements_map q es M ->
+  holds_steps s (flat_map (steps_of x) (map selement_of es)) M.
 Proof.
-  intros Hs Hq H. induction H as [|e es E M HE HM IH]; cbn [map].
+  intros Hs Hq H. induction H as [|e es E M HE HM IH]; cbn [map flat_map].
   - apply no_step. reflexivity.
-  - apply first_step with (E := E) (M := M); auto. apply step_of_ok with q; assumption.
+  - eapply steps_of_ok; eassumption.
 Qed.
 
 (** ** Frames *)
@@ -328,18 +411,18 @@ Qed.
 Record sframe := Sframe { sparent : nat; sorigin : step; selements : list selement }.
 Definition sframe_of (f : frame) : sframe := Sframe (parent f) (placed (origin f)) (map selement_of (elements f)).
 
-Definition tree_at (fs : list sframe) (p : spiece) (a b : Z) : tree :=
-  let vars := variables p a b in
-  map (fun f => (sparent f, sorigin f :: map (step_of vars) (selements f))) fs.
+Definition tree_of (fs : list sframe) (x : sstate) : tree :=
+  map (fun f => (sparent f, sorigin f :: flat_map (steps_of x) (selements f))) fs.
+Definition tree_at (fs : list sframe) (p : spiece) (a b : Z) : tree := tree_of fs (state_at p (time_tm a b)).
 
-Lemma tree_ok w p a b t s P : Rabs s <= 1 -> holds (time_tm a b) s t -> frames_at w (value p t) P ->
-  forall i k sts, nth_error (tree_at (map sframe_of (frames w)) (spiece_of p) a b) i = Some (k, sts) ->
+Lemma tree_ok w p tmodel t s P : Rabs s <= 1 -> holds tmodel s t -> frames_at w (at_time p t) P ->
+  forall i k sts, nth_error (tree_of (map sframe_of (frames w)) (state_at (spiece_of p) tmodel)) i = Some (k, sts) ->
   exists E, holds_steps s sts E /\ forall x, P (S i) x = P k (E x).
 Proof.
-  intros Hs Ht [_ F] i k sts. unfold tree_at. rewrite map_map.
+  intros Hs Ht [_ F] i k sts. unfold tree_of. rewrite map_map.
   rewrite nth_error_map. destruct (nth_error (frames w) i) as [f|] eqn:N; [|discriminate]. cbn.
   intros [= <- <-]. destruct (F i f N) as (O & M & HO & HM & X). exists (fun x => O (M x)). split.
   - apply first_step with (E := O) (M := M); [apply placed_ok; exact HO | | reflexivity].
-    apply steps_of_ok with (value p t); [exact Hs | | exact HM]. intros v. apply variables_ok; assumption.
+    apply all_steps_ok with (at_time p t); [exact Hs | apply state_ok; assumption | exact HM].
   - exact X.
 Qed.

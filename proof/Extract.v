@@ -3,7 +3,7 @@
     counts and numbers of frames are OCaml's int, names are OCaml's strings. *)
 From Coq Require Import ZArith String.
 From Coq Require Extraction ExtrOcamlBasic ExtrOcamlNatInt ExtrOcamlNativeString.
-From FclArtic Require Import Statement Numbers Walk.
+From FclArtic Require Import Statement Numbers Meaning Reasons Witness Walk.
 
 Extract Inductive positive => "Big.t" [ "Big.double_one" "Big.double" "Big.one" ] "Big.case_positive".
 Extract Inductive Z => "Big.t" [ "Big.zero" "Big.same" "Big.neg" ] "Big.case_z".
@@ -28,4 +28,4 @@ Extract Inlined Constant Z.ltb => "Big.ltb".
 Extract Inlined Constant Z.of_nat => "Big.of_int".
 Extract Inlined Constant Z.to_nat => "Big.to_nat".
 
-Extraction "checker.ml" accepts checked.
+Extraction "checker.ml" prepare_world accepts_prepared accepts_meeting checked has_rotation nothing is_meaningful reasons_ok pieces_join.

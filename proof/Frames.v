@@ -128,11 +128,28 @@ Proof.
     rewrite S. ring.
 Qed.
 
+(** The turn about u by an angle of which |u| is the sine and c the cosine of the half. *)
+Definition spun (u : vec) (c : R) (x : vec) : vec :=
+  add (add (scale (2 * (c * c) - 1) x) (scale (2 * c) (cross u x))) (scale (2 * dot u x) u).
+
+Lemma dot_spun u c v x : dot v (spun u c x) = dot (spun (scale (-1) u) c v) x.
+Proof. destruct u, v, x. unfold spun. coordinates. ring. Qed.
+
+Lemma spun_keeps_dot u c v x : c * c + dot u u = 1 -> dot (spun u c v) (spun u c x) = dot v x.
+Proof.
+  intros S.
+  transitivity (((2 * (c * c) - 1) * (2 * (c * c) - 1) + 4 * (c * c) * dot u u) * dot v x +
+                (4 * dot u u - 4 * (c * c) + 4 * (2 * (c * c) - 1)) * (dot u v * dot u x)).
+  - destruct u, v, x. unfold spun. coordinates. ring.
+  - replace (dot u u) with (1 - c * c) by lra. ring.
+Qed.
+
 (** ** Steps *)
 
 Inductive step :=
   | Turned (k : tvec) (sn cs : tm)
   | Slid (k : tvec) (way : tm)
+  | Spun (u : tvec) (c : tm)
   | Placed (m1 m2 m3 : tvec) (p : tvec).      (* a matrix by rows, and a translation *)
 
 Inductive holds_step : step -> (vec -> vec) -> Prop :=
@@ -140,6 +157,8 @@ Inductive holds_step : step -> (vec -> vec) -> Prop :=
       dot k k = 1 -> sn * sn + cs * cs = 1 -> (forall x, E x = turned k sn cs x) -> holds_step (Turned km snm csm) E
   | holds_slid km wm k way E : holdsv km s k -> holds wm s way -> (forall x, E x = add x (scale way k)) ->
       holds_step (Slid km wm) E
+  | holds_spun um cm u c E : holdsv um s u -> holds cm s c -> c * c + dot u u = 1 -> (forall x, E x = spun u c x) ->
+      holds_step (Spun um cm) E
   | holds_placed a b c pm m p E : holdsv a s (row1 m) -> holdsv b s (row2 m) -> holdsv c s (row3 m) ->
       holdsv pm s p -> rotation m -> (forall x, E x = add (apply m x) p) -> holds_step (Placed a b c pm) E.
 
@@ -157,11 +176,36 @@ Proof.
   - apply holds_mul; [assumption | apply holds_sub; [apply holds_one | assumption] | apply holds_dot; assumption].
 Qed.
 
+Definition topp (v : tvec) : tvec := Tvec (tm_opp (tx v)) (tm_opp (ty v)) (tm_opp (tz v)).
+Lemma holdsv_opp vm v : holdsv vm s v -> holdsv (topp vm) s (scale (-1) v).
+Proof.
+  intros (A & B & C). unfold scale.
+  repeat split; cbn [topp tx ty tz vx vy vz]; (eapply holds_eq; [|apply holds_opp; eassumption]; ring).
+Qed.
+
+Definition tspun (u : tvec) (c : tm) (v : tvec) : tvec :=
+  let c2 := tm_mul c c in let d := tdot u v in
+  tadd (tadd (tscale (tm_sub (tm_add c2 c2) tm_one) v) (tscale (tm_add c c) (tcross u v))) (tscale (tm_add d d) u).
+
+Lemma holdsv_spun um cm u c vm v : holdsv um s u -> holds cm s c -> holdsv vm s v ->
+  holdsv (tspun um cm vm) s (spun u c v).
+Proof.
+  intros Hu Hc Hv. unfold tspun, spun.
+  replace (2 * (c * c) - 1) with (c * c + c * c - 1) by ring. replace (2 * c) with (c + c) by ring.
+  replace (2 * dot u v) with (dot u v + dot u v) by ring.
+  repeat apply holdsv_add; apply holdsv_scale; try assumption.
+  - apply holds_sub; [apply holds_add; apply holds_mul; assumption | apply holds_one].
+  - apply holds_add; assumption.
+  - apply holdsv_cross; assumption.
+  - apply holds_add; apply holds_dot; assumption.
+Qed.
+
 (** From the parent's coordinates to the child's, x = E y. *)
 Definition down (st : step) (f : func) : func :=
   match st with
   | Turned k sn cs => Func (tturned k (tm_opp sn) cs (fv f)) (fd f)
   | Slid k way => Func (fv f) (tm_add (fd f) (tm_mul way (tdot (fv f) k)))
+  | Spun u c => Func (tspun (topp u) c (fv f)) (fd f)
   | Placed a b c p =>
       let v := fv f in
       Func (tadd (tadd (tscale (tx v) a) (tscale (ty v) b)) (tscale (tz v) c)) (tm_add (fd f) (tdot v p))
@@ -172,6 +216,7 @@ Definition up (st : step) (f : func) : func :=
   match st with
   | Turned k sn cs => Func (tturned k sn cs (fv f)) (fd f)
   | Slid k way => Func (fv f) (tm_sub (fd f) (tm_mul way (tdot (fv f) k)))
+  | Spun u c => Func (tspun u c (fv f)) (fd f)
   | Placed a b c p =>
       let v := Tvec (tdot a (fv f)) (tdot b (fv f)) (tdot c (fv f)) in Func v (tm_sub (fd f) (tdot v p))
   end.
@@ -180,7 +225,7 @@ Lemma down_ok st E f v d : holds_step st E -> holdsf f v d ->
   exists v' d', holdsf (down st f) v' d' /\ dot v' v' = dot v v /\ forall x, dot v (E x) + d = dot v' x + d'.
 Proof.
   intros HE [Hv Hd]. destruct HE as [km snm csm k sn cs E Hk Hsn Hcs K S HE | km wm k way E Hk Hw HE
-                                    | a b c pm m p E Ha Hb Hc Hp R HE].
+                                    | um cm u c E Hu Hc K HE | a b c pm m p E Ha Hb Hc Hp R HE].
   - exists (turned k (- sn) cs v), d. split; [|split].
     + split; [|exact Hd]. apply holdsv_turned; try assumption. apply holds_opp. assumption.
     + apply turned_keeps_dot; [exact K|]. rewrite <- S. ring.
@@ -189,6 +234,10 @@ Proof.
     + split; [exact Hv|]. apply holds_add; [exact Hd|]. apply holds_mul; [exact Hs | exact Hw|].
       apply holds_dot; assumption.
     + intros x. rewrite HE. coordinates. ring.
+  - exists (spun (scale (-1) u) c v), d. split; [|split].
+    + split; [|exact Hd]. apply holdsv_spun; [apply holdsv_opp | |]; assumption.
+    + apply spun_keeps_dot. rewrite <- K. unfold dot, scale; cbn [vx vy vz]. ring.
+    + intros x. rewrite HE, dot_spun. reflexivity.
   - exists (apply (transpose m) v), (d + dot v p). split; [|split].
     + destruct Hv as (V1 & V2 & V3). split.
       * replace (apply (transpose m) v) with
@@ -204,7 +253,7 @@ Lemma up_ok st E f v d : holds_step st E -> holdsf f v d ->
   exists v' d', holdsf (up st f) v' d' /\ dot v' v' = dot v v /\ forall x, dot v' (E x) + d' = dot v x + d.
 Proof.
   intros HE [Hv Hd]. destruct HE as [km snm csm k sn cs E Hk Hsn Hcs K S HE | km wm k way E Hk Hw HE
-                                    | a b c pm m p E Ha Hb Hc Hp R HE].
+                                    | um cm u c E Hu Hc K HE | a b c pm m p E Ha Hb Hc Hp R HE].
   - exists (turned k sn cs v), d. split; [|split].
     + split; [|exact Hd]. apply holdsv_turned; assumption.
     + apply turned_keeps_dot; assumption.
@@ -213,6 +262,10 @@ Proof.
     + split; [exact Hv|]. apply holds_sub; [exact Hd|]. apply holds_mul; [exact Hs | exact Hw|].
       apply holds_dot; assumption.
     + intros x. rewrite HE. coordinates. ring.
+  - exists (spun u c v), d. split; [|split].
+    + split; [|exact Hd]. apply holdsv_spun; assumption.
+    + apply spun_keeps_dot; assumption.
+    + intros x. rewrite HE, spun_keeps_dot by assumption. reflexivity.
   - assert (HV : holdsv (Tvec (tdot a (fv f)) (tdot b (fv f)) (tdot c (fv f))) s (apply m v)).
     { repeat split; apply holds_dot; assumption. }
     exists (apply m v), (d - dot (apply m v) p). split; [|split].
@@ -228,6 +281,17 @@ Inductive holds_steps : list step -> (vec -> vec) -> Prop :=
   | no_step E : (forall x, E x = x) -> holds_steps [] E
   | first_step st sts E M N : holds_step st E -> holds_steps sts M -> (forall x, N x = E (M x)) ->
       holds_steps (st :: sts) N.
+
+Lemma steps_app sts E : holds_steps sts E -> forall rest M, holds_steps rest M ->
+  holds_steps (sts ++ rest) (fun x => E (M x)).
+Proof.
+  induction 1 as [E HE | st sts E M N HS HM IH HN]; intros rest L HL; cbn [app].
+  - assert (K : forall sts' A, holds_steps sts' A -> forall B, (forall x, B x = A x) -> holds_steps sts' B).
+    { intros sts' A [C HC | st sts'' C D F HC HD HF] B HB; [apply no_step | eapply first_step; [exact HC | exact HD|]];
+        intros; rewrite HB; auto. }
+    eapply K; [exact HL|]. intros. apply HE.
+  - eapply first_step; [exact HS | exact (IH _ _ HL)|]. intros x. apply HN.
+Qed.
 
 Definition down_all (sts : list step) (f : func) : func := fold_left (fun f st => down st f) sts f.
 Definition up_all (sts : list step) (f : func) : func := fold_right up f sts.

@@ -23,9 +23,12 @@ Qed.
 
     A convex piece as its corners and a radius. A corner is an ellipsoid around a point, with the semi-axes along those
     of the geometry: a disc, or most often the point itself. Its numbers are constant models. The outline covers a point
-    if along every direction the point is no farther than some corner and the radius. *)
+    if along every direction the point is no farther than some corner and the radius. A halfspace is a wall; a plane is
+    one with [both] sides. *)
 Record round := Round { centre : tvec; semiaxes : option tvec }.
-Record outline := Outline { corners : list round; radius : Z }.
+Inductive outline :=
+  | Outline (corners : list round) (radius : Z)
+  | Wall (normal : numbers3) (offset : number) (both : bool).
 
 Definition times (a v : vec) : vec := Vec (vx a * vx v) (vy a * vy v) (vz a * vz v).
 
@@ -33,8 +36,12 @@ Definition holds_round (c : round) (s : R) (p a : vec) : Prop :=
   holdsv (centre c) s p /\ match semiaxes c with Some m => holdsv m s a | None => a = Vec 0 0 0 end.
 
 Definition covers (s : R) (o : outline) (x : vec) : Prop :=
-  forall v, exists c p a, In c (corners o) /\ holds_round c s p a /\
-    dot v x <= dot v p + norm (times a v) + V (radius o) * norm v.
+  match o with
+  | Outline corners radius =>
+      forall v, exists c p a, In c corners /\ holds_round c s p a /\
+        dot v x <= dot v p + norm (times a v) + V radius * norm v
+  | Wall n d both => dot (point n) x <= real d /\ (both = true -> dot (point n) x = real d)
+  end.
 
 Definition at_point (p : tvec) : round := Round p None.
 
@@ -69,6 +76,8 @@ Definition outlines (g : geometry) : list outline :=
   | Cylinder r l => [Outline [disc (upper_end l) r; disc (lower_end l) r] 0]
   | Cone r l => [Outline [at_point (upper_end l); disc (lower_end l) r] 0]
   | Hull ps => [of_points (map tm_point ps)]
+  | Halfspace n d => [Wall n d false]
+  | Plane n d => [Wall n d true]
   end.
 
 Lemma real_half x : real (half x) = real x / 2.
@@ -94,7 +103,7 @@ Qed.
 Lemma points_cover s ms x :
   (forall v, exists m p, In m ms /\ holdsv m s p /\ dot v x <= dot v p) -> covers s (of_points ms) x.
 Proof.
-  intros H v. destruct (H v) as (m & p & I & Hm & L). exists (at_point m), p, (Vec 0 0 0). cbn [corners radius of_points].
+  intros H v. destruct (H v) as (m & p & I & Hm & L). exists (at_point m), p, (Vec 0 0 0).
   split; [apply in_map; exact I|]. split; [apply at_point_holds; exact Hm|]. rewrite norm_nil, V_0. lra.
 Qed.
 
@@ -136,7 +145,7 @@ Qed.
 Lemma ball_covers s cs r rr x c : (forall v, exists m p, In m cs /\ holdsv m s p /\ dot v c <= dot v p) ->
   norm (sub x c) <= rr -> rr <= V r -> covers s (Outline (map at_point cs) r) x.
 Proof.
-  intros H N R v. destruct (H v) as (m & p & Im & Hm & L). exists (at_point m), p, (Vec 0 0 0). cbn [corners radius].
+  intros H N R v. destruct (H v) as (m & p & Im & Hm & L). exists (at_point m), p, (Vec 0 0 0).
   split; [apply in_map; exact Im|]. split; [apply at_point_holds; exact Hm|]. rewrite norm_nil.
   assert (E : dot v x = dot v c + dot v (sub x c)) by (unfold dot, sub, add, scale; cbn; ring).
   pose proof (cauchy v (sub x c)). pose proof (norm_nonneg v).
@@ -172,7 +181,7 @@ Proof. intros H. split; [exact H|]. repeat split; try apply holds_number. apply 
 
 Theorem outlines_cover g x : inside g x -> exists o, In o (outlines g) /\ forall s, covers s o x.
 Proof.
-  destruct g as [ts | cells | sizes | r | r l | a | r l | r l | ps]; cbn [inside outlines].
+  destruct g as [ts | cells | sizes | r | r l | a | r l | r l | ps | n d | n d]; cbn [inside outlines].
   - intros (a & b & c & I & H). exists (of_points [tm_point a; tm_point b; tm_point c]).
     split; [apply in_map_iff; exists (a, b, c); split; [reflexivity | exact I]|]. intros s.
     eapply hull_covers; [|exact H]. repeat (apply Forall2_cons; [apply holdsv_point|]). apply Forall2_nil.
@@ -198,7 +207,7 @@ Proof.
     + exists (lower_end l), (Vec 0 0 (- (real l / 2))). split; [right; left; reflexivity|]. split; [exact L|].
       unfold dot; cbn [vx vy vz]. nra.
   - intros (u & Nu & ->). eexists. split; [left; reflexivity|]. intros s v.
-    exists (Round origin_tm (Some (tm_point a))), (Vec 0 0 0), (point a). cbn [corners radius].
+    exists (Round origin_tm (Some (tm_point a))), (Vec 0 0 0), (point a).
     split; [left; reflexivity|]. split; [split; [apply origin_holds | apply holdsv_point]|]. rewrite V_0.
     pose proof (cauchy (times (point a) v) u) as C. pose proof (norm_nonneg (times (point a) v)).
     assert (norm (times (point a) v) * norm u <= norm (times (point a) v) * 1) by (apply Rmult_le_compat_l; assumption).
@@ -206,14 +215,14 @@ Proof.
     replace (dot v (Vec 0 0 0)) with 0 by (unfold dot; cbn; ring). lra.
   - intros (N & Hz). eexists. split; [left; reflexivity|]. intros s v. destruct (ends_hold s l) as [U L].
     assert (R : 0 <= real r) by (pose proof (norm_nonneg (Vec (vx x) (vy x) 0)); lra).
-    pose proof (in_disc v x (real r) N R) as D. cbn [corners radius]. rewrite V_0.
+    pose proof (in_disc v x (real r) N R) as D. rewrite V_0.
     destruct (Rle_lt_dec 0 (vz v)) as [P|G].
     + exists (disc (upper_end l) r), (Vec 0 0 (real l / 2)), (Vec (real r) (real r) 0).
       split; [left; reflexivity|]. split; [apply disc_holds; exact U|]. unfold dot; cbn [vx vy vz]. nra.
     + exists (disc (lower_end l) r), (Vec 0 0 (- (real l / 2))), (Vec (real r) (real r) 0).
       split; [right; left; reflexivity|]. split; [apply disc_holds; exact L|]. unfold dot; cbn [vx vy vz]. nra.
   - intros (h & Hh & N & Hz). eexists. split; [left; reflexivity|]. intros s v. destruct (ends_hold s l) as [U L].
-    cbn [corners radius]. rewrite V_0.
+    rewrite V_0.
     assert (D : vx v * vx x + vy v * vy x <= (1 - h) * norm (times (Vec (real r) (real r) 0) v)).
     { pose proof (norm_nonneg (Vec (vx x) (vy x) 0)).
       pose proof (in_disc v x ((1 - h) * real r) N ltac:(lra)) as D.
@@ -235,12 +244,177 @@ Proof.
       unfold dot at 2; cbn [vx vy vz]. nra.
   - intros H. eexists. split; [left; reflexivity|]. intros s. apply hull_covers with (ps := map point ps); [|exact H].
     clear H. induction ps as [|p ps IH]; cbn; constructor; [apply holdsv_point | exact IH].
+  - intros H. eexists. split; [left; reflexivity|]. intros s. split; [exact H | discriminate].
+  - intros H. eexists. split; [left; reflexivity|]. intros s. split; [lra | intros _; exact H].
 Qed.
+
+(** ** Bounds: boxes along the axes *)
+
+Record bounds := Bounds { x0 : Z; x1 : Z; y0 : Z; y1 : Z; z0 : Z; z1 : Z }.
+Definition in_bounds (b : bounds) (x : vec) : Prop :=
+  V (x0 b) <= vx x <= V (x1 b) /\ V (y0 b) <= vy x <= V (y1 b) /\ V (z0 b) <= vz x <= V (z1 b).
+Definition both_bounds (a b : bounds) : bounds :=
+  Bounds (Z.min (x0 a) (x0 b)) (Z.max (x1 a) (x1 b)) (Z.min (y0 a) (y0 b)) (Z.max (y1 a) (y1 b))
+         (Z.min (z0 a) (z0 b)) (Z.max (z1 a) (z1 b)).
+Definition join_bounds (a b : option bounds) : option bounds :=
+  match a, b with Some x, Some y => Some (both_bounds x y) | _, _ => None end.
+
+Definition bounds_of_corner (c : round) : option bounds :=
+  let p := centre c in
+  match semiaxes c with
+  | None =>
+      if is_const (tx p) && is_const (ty p) && is_const (tz p) then
+        Some (Bounds (c0 (tx p) - rem (tx p)) (c0 (tx p) + rem (tx p)) (c0 (ty p) - rem (ty p)) (c0 (ty p) + rem (ty p))
+                     (c0 (tz p) - rem (tz p)) (c0 (tz p) + rem (tz p)))
+      else None
+  | Some _ => None
+  end.
+Fixpoint bounds_of_corners (cs : list round) : option bounds :=
+  match cs with
+  | [] => None
+  | [c] => bounds_of_corner c
+  | c :: rest => join_bounds (bounds_of_corner c) (bounds_of_corners rest)
+  end.
+Definition bounds_of (o : outline) : option bounds :=
+  match o with Outline cs r => if Z.leb r 0 then bounds_of_corners cs else None | Wall _ _ _ => None end.
+
+Definition bounded (b : bounds) (o : outline) : Prop := forall s x, covers s o x -> in_bounds b x.
+
+Lemma both_bounds_ok a b x : in_bounds a x \/ in_bounds b x -> in_bounds (both_bounds a b) x.
+Proof.
+  unfold in_bounds, both_bounds; cbn [x0 x1 y0 y1 z0 z1].
+  assert (L : forall p q, V (Z.min p q) <= V p /\ V (Z.min p q) <= V q) by (intros; split; apply V_le; lia).
+  pose proof (L (x0 a) (x0 b)). pose proof (L (y0 a) (y0 b)). pose proof (L (z0 a) (z0 b)).
+  pose proof (V_max (x1 a) (x1 b)). pose proof (V_max (y1 a) (y1 b)). pose proof (V_max (z1 a) (z1 b)).
+  intros [(A & B & C)|(A & B & C)]; repeat split; lra.
+Qed.
+
+Lemma bounds_of_corner_ok s c b p a : bounds_of_corner c = Some b -> holds_round c s p a -> a = Vec 0 0 0 /\ in_bounds b p.
+Proof.
+  unfold bounds_of_corner, holds_round. destruct (semiaxes c); [discriminate|].
+  destruct (is_const (tx (centre c)) && is_const (ty (centre c)) && is_const (tz (centre c))) eqn:K; [|discriminate].
+  rewrite !andb_true_iff in K. destruct K as [[K1 K2] K3]. apply is_const_const in K1, K2, K3. intros [= <-] [(H1 & H2 & H3) ->].
+  split; [reflexivity|]. rewrite K1 in H1. rewrite K2 in H2. rewrite K3 in H3. apply holds_const, abs_in in H1, H2, H3.
+  unfold in_bounds; cbn [x0 x1 y0 y1 z0 z1]. rewrite !V_add, !V_sub. repeat split; lra.
+Qed.
+
+Lemma bounds_of_corners_ok s cs c p a : In c cs -> holds_round c s p a -> forall b, bounds_of_corners cs = Some b ->
+  a = Vec 0 0 0 /\ in_bounds b p.
+Proof.
+  intros I H. induction cs as [|d cs IH]; [destruct I|]. intros b. cbn [bounds_of_corners]. destruct cs as [|e cs].
+  - destruct I as [->|[]]. intros E. exact (bounds_of_corner_ok s c b p a E H).
+  - destruct (bounds_of_corner d) as [x|] eqn:D; [|discriminate].
+    destruct (bounds_of_corners (e :: cs)) as [y|]; [|discriminate]. intros [= <-]. destruct I as [->|I].
+    + destruct (bounds_of_corner_ok s c x p a D H) as [A B]. split; [exact A | apply both_bounds_ok; left; exact B].
+    + destruct (IH I y eq_refl) as [A B]. split; [exact A | apply both_bounds_ok; right; exact B].
+Qed.
+
+Lemma bounds_of_ok o b : bounds_of o = Some b -> bounded b o.
+Proof.
+  destruct o as [cs r|]; [|discriminate]. cbn [bounds_of]. destruct (Z.leb_spec r 0) as [R|]; [|discriminate].
+  intros E s x C. cbn [covers] in C. apply V_le in R. rewrite V_0 in R.
+  assert (K : forall v, exists p, in_bounds b p /\ dot v x <= dot v p).
+  { intros v. destruct (C v) as (c & p & a & I & H & L). destruct (bounds_of_corners_ok s cs c p a I H b E) as [-> B].
+    exists p. split; [exact B|]. rewrite norm_nil in L. pose proof (norm_nonneg v). nra. }
+  destruct (K (Vec 1 0 0)) as (p1 & B1 & L1). destruct (K (Vec (-1) 0 0)) as (p2 & B2 & L2).
+  destruct (K (Vec 0 1 0)) as (p3 & B3 & L3). destruct (K (Vec 0 (-1) 0)) as (p4 & B4 & L4).
+  destruct (K (Vec 0 0 1)) as (p5 & B5 & L5). destruct (K (Vec 0 0 (-1))) as (p6 & B6 & L6).
+  unfold in_bounds, dot in *; cbn [vx vy vz] in *. repeat split; lra.
+Qed.
+
+(** ** Pieces in a tree
+
+    In their order. A group has bounds, or none; a piece of the tree is within those of all groups that have it. *)
+Inductive forest :=
+  | Piece (o : outline)
+  | Group (size : nat) (b : option bounds) (l r : forest).
+
+Fixpoint has (t : forest) (o : outline) : Prop :=
+  match t with
+  | Piece p => p = o
+  | Group _ b l r => (has l o \/ has r o) /\ match b with Some x => bounded x o | None => True end
+  end.
+
+Definition count (t : forest) : nat := match t with Piece _ => 1%nat | Group n _ _ _ => n end.
+
+(** The first k pieces and the others; none if there are no such. *)
+Fixpoint split (k : nat) (t : forest) : option (forest * forest) :=
+  match t with
+  | Piece _ => None
+  | Group n b l r =>
+      let c := count l in
+      if Nat.ltb k c then match split k l with Some (l1, l2) => Some (l1, Group (n - k) b l2 r) | None => None end
+      else if Nat.eqb k c then Some (l, r)
+      else match split (k - c) r with Some (r1, r2) => Some (Group k b l r1, r2) | None => None end
+  end.
+
+Lemma split_has t o : forall k l r, split k t = Some (l, r) -> has t o -> has l o \/ has r o.
+Proof.
+  induction t as [p | n b l IHl r IHr]; intros k x y; cbn [split]; [discriminate|].
+  destruct (Nat.ltb k (count l)); [|destruct (Nat.eqb k (count l))].
+  - destruct (split k l) as [[l1 l2]|] eqn:E; [|discriminate]. intros [= <- <-] [H B]. cbn [has].
+    destruct H as [H|H]; [destruct (IHl _ _ _ E H)|]; tauto.
+  - intros [= <- <-] [H _]. exact H.
+  - destruct (split (k - count l) r) as [[r1 r2]|] eqn:E; [|discriminate]. intros [= <- <-] [H B]. cbn [has].
+    destruct H as [H|H]; [|destruct (IHr _ _ _ E H)]; tauto.
+Qed.
+
+(** A list as a tree: by halves, with bounds for groups of four and more. *)
+Definition no_piece : outline := Outline [] 0.
+Fixpoint in_a_row (o : outline) (os : list outline) : forest :=
+  match os with [] => Piece o | p :: rest => Group (S (length os)) None (Piece o) (in_a_row p rest) end.
+
+Fixpoint grow (fuel : nat) (os : list outline) : forest * option bounds :=
+  match os with
+  | [] => (Piece no_piece, None)
+  | [o] => (Piece o, bounds_of o)
+  | o :: rest =>
+      match fuel with
+      | O => (in_a_row o rest, None)
+      | S n =>
+          let size := length os in
+          let k := Nat.div size 2 in
+          let (l, a) := grow n (firstn k os) in
+          let (r, b) := grow n (skipn k os) in
+          let both := join_bounds a b in
+          (Group size (if Nat.leb 4 size then both else None) l r, both)
+      end
+  end.
+Definition forest_of (os : list outline) : forest := fst (grow 64 os).
+
+Lemma in_a_row_has os : forall o p, In p (o :: os) -> has (in_a_row o os) p.
+Proof.
+  induction os as [|q os IH]; intros o p I; cbn [in_a_row has].
+  - destruct I as [->|[]]. reflexivity.
+  - split; [|exact Logic.I]. destruct I as [->|I]; [left; reflexivity | right; apply IH; exact I].
+Qed.
+
+Lemma grow_has fuel : forall os o, In o os ->
+  has (fst (grow fuel os)) o /\ forall b, snd (grow fuel os) = Some b -> bounded b o.
+Proof.
+  induction fuel as [|n IH]; intros os o I; (destruct os as [|p [|q os]]; [destruct I | |]).
+  - destruct I as [->|[]]. split; [reflexivity | apply bounds_of_ok].
+  - cbn [grow fst snd]. split; [apply in_a_row_has; exact I | discriminate].
+  - destruct I as [->|[]]. split; [reflexivity | apply bounds_of_ok].
+  - cbn [grow]. set (os' := p :: q :: os) in *. set (k := Nat.div (length os') 2).
+    pose proof (IH (firstn k os') o) as L. pose proof (IH (skipn k os') o) as R.
+    destruct (grow n (firstn k os')) as [l a]. destruct (grow n (skipn k os')) as [r b]. cbn [fst snd] in *.
+    rewrite <- (firstn_skipn k os') in I. apply in_app_or in I.
+    assert (B : forall x, join_bounds a b = Some x -> bounded x o).
+    { intros x E s y C. destruct a as [a|], b as [b|]; try discriminate. injection E as <-. apply both_bounds_ok.
+      destruct I as [I|I]; [left; exact (proj2 (L I) a eq_refl s y C) | right; exact (proj2 (R I) b eq_refl s y C)]. }
+    split; [|exact B]. cbn [has]. split; [destruct I as [I|I]; [left; apply L | right; apply R]; exact I|].
+    destruct (Nat.leb 4 (length os')); [|exact Logic.I]. destruct (join_bounds a b) as [x|]; [exact (B x eq_refl) | exact Logic.I].
+Qed.
+
+Lemma forest_of_has os o : In o os -> has (forest_of os) o.
+Proof. intros I. apply (grow_has 64 os o I). Qed.
 
 (** ** How far pieces reach *)
 
+(** No bound of one of two is none of both. *)
 Definition upper_join (a b : option upper) : option upper :=
-  match a, b with Some u, Some w => Some (upper_max u w) | None, _ => b | _, None => a end.
+  match a, b with Some u, Some w => Some (upper_max u w) | _, _ => None end.
 
 (** Above the length of a vector of models. With l the linear part, the length |l(s)| is convex: not above the line
     between its values at s = -1 and s = 1. The rest adds its magnitude. *)
@@ -260,16 +434,60 @@ Definition corner_reach (f : func) (c : round) : upper :=
   match semiaxes c with None => u | Some a => upper_add u (chord (ttimes a (fv f))) end.
 
 Fixpoint farthest (f : func) (cs : list round) : option upper :=
-  match cs with [] => None | c :: rest => upper_join (Some (corner_reach f c)) (farthest f rest) end.
+  match cs with
+  | [] => None
+  | [c] => Some (corner_reach f c)
+  | c :: rest => upper_join (Some (corner_reach f c)) (farthest f rest)
+  end.
 
 (** [length]: at least that of the direction. *)
 Definition reach_one (f : func) (length : Z) (o : outline) : option upper :=
-  option_map (fun u => upper_add u (upper_const (mulup (Z.max 0 (radius o)) length))) (farthest f (corners o)).
+  match o with
+  | Outline corners radius =>
+      option_map (fun u => upper_add u (upper_const (mulup (Z.max 0 radius) length))) (farthest f corners)
+  | Wall _ _ _ => None
+  end.
 
-Fixpoint reach (f : func) (length : Z) (os : list outline) : option upper :=
-  match os with [] => None | o :: rest => upper_join (reach_one f length o) (reach f length rest) end.
+(** A linear function on a box: in each coordinate one of both ends is the farthest. *)
+Definition ends_reach (lo hi : Z) (m : tm) : upper :=
+  upper_max (upper_of (tm_mul (const lo 0) m)) (upper_of (tm_mul (const hi 0) m)).
+Definition bounds_reach (f : func) (b : bounds) : upper :=
+  upper_add (upper_add (upper_add (ends_reach (x0 b) (x1 b) (tx (fv f))) (ends_reach (y0 b) (y1 b) (ty (fv f))))
+    (ends_reach (z0 b) (z1 b) (tz (fv f)))) (upper_of (fd f)).
+Definition upper_leb (a b : upper) : bool := Z.leb (u0 a) (u0 b) && Z.leb (u1 a) (u1 b) && Z.leb (u2 a) (u2 b).
 
-Definition below_opt (u : option upper) (s y : R) : Prop := match u with Some w => below w s y | None => False end.
+(** The greater of [best] and what the pieces reach. Groups that don't reach beyond it are passed over. *)
+Fixpoint reach_in (f : func) (length : Z) (t : forest) (best : upper) : option upper :=
+  match t with
+  | Piece o => upper_join (Some best) (reach_one f length o)
+  | Group _ b l r =>
+      if match b with Some x => upper_leb (bounds_reach f x) best | None => false end then Some best
+      else match reach_in f length l best with Some u => reach_in f length r u | None => None end
+  end.
+
+(** A piece that is likely to be the farthest, by one of the three coefficients. (Any would do for the proof.) *)
+Definition bounds_at (t : forest) : option bounds := match t with Group _ b _ _ => b | Piece o => bounds_of o end.
+Fixpoint likely (f : func) (pick : upper -> Z) (t : forest) : outline :=
+  match t with
+  | Piece o => o
+  | Group _ _ l r =>
+      match bounds_at l, bounds_at r with
+      | Some x, Some y =>
+          if Z.ltb (pick (bounds_reach f x)) (pick (bounds_reach f y)) then likely f pick r else likely f pick l
+      | _, _ => likely f pick l
+      end
+  end.
+
+Definition reach (f : func) (length : Z) (t : forest) : option upper :=
+  let one pick := reach_one f length (likely f pick t) in
+  match t with
+  | Piece o => reach_one f length o
+  | Group _ None _ _ => match one u1 with Some u => reach_in f length t u | None => None end
+  | Group _ (Some _) _ _ =>
+      match upper_join (one u0) (upper_join (one u1) (one u2)) with Some u => reach_in f length t u | None => None end
+  end.
+
+Definition below_opt (u : option upper) (s y : R) : Prop := match u with Some w => below w s y | None => True end.
 
 Section AtOneTime.
 Variable s : R.
@@ -377,40 +595,84 @@ Proof.
     e1 * ((1 + s) * (1 + s) / 4) + V rest); [lra|]. apply Req_le. field.
 Qed.
 
+Lemma corner_ok f v d c p a : holdsf s f v d -> holds_round c s p a ->
+  below (corner_reach f c) s (dot v p + d + norm (times a v)).
+Proof.
+  intros [Hv Hd] [Hc Ha]. unfold corner_reach.
+  assert (C : below (upper_of (tm_add (tdot (centre c) (fv f)) (fd f))) s (dot v p + d)).
+  { apply below_of. apply holds_add; [|exact Hd].
+    eapply holds_eq; [|apply holds_dot; [exact Hs | exact Hc | exact Hv]]. unfold dot. ring. }
+  destruct (semiaxes c) as [am|].
+  - apply below_add; [exact C|]. apply chord_ok. destruct Ha as (A1 & A2 & A3), Hv as (V1 & V2 & V3).
+    repeat split; apply holds_mul; assumption.
+  - subst a. rewrite norm_nil, Rplus_0_r. exact C.
+Qed.
+
 Lemma farthest_ok f v d cs c p a : holdsf s f v d -> In c cs -> holds_round c s p a ->
   below_opt (farthest f cs) s (dot v p + d + norm (times a v)).
 Proof.
-  intros [Hv Hd] I [Hc Ha]. induction cs as [|c' cs IH]; [destruct I|]. cbn [farthest]. destruct I as [->|I].
-  - apply below_join_l. cbn [below_opt]. unfold corner_reach.
-    assert (C : below (upper_of (tm_add (tdot (centre c) (fv f)) (fd f))) s (dot v p + d)).
-    { apply below_of. apply holds_add; [|exact Hd].
-      eapply holds_eq; [|apply holds_dot; [exact Hs | exact Hc | exact Hv]]. unfold dot. ring. }
-    destruct (semiaxes c) as [am|].
-    + apply below_add; [exact C|]. apply chord_ok. destruct Ha as (A1 & A2 & A3), Hv as (V1 & V2 & V3).
-      repeat split; apply holds_mul; assumption.
-    + subst a. rewrite norm_nil, Rplus_0_r. exact C.
-  - apply below_join_r. apply IH. exact I.
+  intros Hf I Hc. pose proof (corner_ok f v d c p a Hf Hc) as K. induction cs as [|c' cs IH]; [destruct I|].
+  cbn [farthest]. destruct cs as [|c'' cs].
+  - destruct I as [->|[]]. exact K.
+  - destruct I as [->|I]; [apply below_join_l; exact K | apply below_join_r; apply IH; exact I].
 Qed.
 
 Lemma reach_one_ok f v d l o x : holdsf s f v d -> norm v <= V l -> covers s o x ->
   below_opt (reach_one f l o) s (dot v x + d).
 Proof.
-  intros Hf Hl C. destruct (C v) as (c & p & a & I & Hc & L).
-  pose proof (farthest_ok f v d (corners o) c p a Hf I Hc) as F. unfold reach_one.
-  destruct (farthest f (corners o)) as [u|]; [|destruct F]. cbn [option_map below_opt] in *.
-  apply below_weaken with ((dot v p + d + norm (times a v)) + V (radius o) * norm v); [lra|].
+  intros Hf Hl C. destruct o as [corners radius|]; [|exact I]. destruct (C v) as (c & p & a & Ic & Hc & L).
+  pose proof (farthest_ok f v d corners c p a Hf Ic Hc) as F. unfold reach_one.
+  destruct (farthest f corners) as [u|]; [|exact I]. cbn [option_map below_opt] in *.
+  apply below_weaken with ((dot v p + d + norm (times a v)) + V radius * norm v); [lra|].
   apply below_add; [exact F|]. apply below_const.
-  pose proof (norm_nonneg v). destruct (V_max 0 (radius o)) as [M1 M2]. rewrite V_0 in M1.
-  apply Rle_trans with (V (Z.max 0 (radius o)) * norm v); [apply Rmult_le_compat_r; assumption|].
+  pose proof (norm_nonneg v). destruct (V_max 0 radius) as [M1 M2]. rewrite V_0 in M1.
+  apply Rle_trans with (V (Z.max 0 radius) * norm v); [apply Rmult_le_compat_r; assumption|].
   eapply Rle_trans; [|apply mulup_ge]. apply Rmult_le_compat_l; assumption.
 Qed.
 
-Lemma reach_ok f v d l os o x : holdsf s f v d -> norm v <= V l -> In o os -> covers s o x ->
-  below_opt (reach f l os) s (dot v x + d).
+Lemma ends_reach_ok lo hi m k y : holds m s k -> V lo <= y <= V hi -> below (ends_reach lo hi m) s (k * y).
 Proof.
-  intros Hf Hl I C. induction os as [|o' os IH]; [destruct I|]. cbn [reach]. destruct I as [->|I].
-  - apply below_join_l. apply reach_one_ok; assumption.
-  - apply below_join_r. apply IH. exact I.
+  intros H B. unfold ends_reach. destruct (Rle_lt_dec 0 k) as [P|N].
+  - apply below_weaken with (V hi * k); [nra|]. eapply below_mono; [exact Hs | apply upper_max_r|].
+    apply below_of. apply holds_mul; [exact Hs | apply holds_exact | exact H].
+  - apply below_weaken with (V lo * k); [nra|]. eapply below_mono; [exact Hs | apply upper_max_l|].
+    apply below_of. apply holds_mul; [exact Hs | apply holds_exact | exact H].
+Qed.
+
+Lemma bounds_reach_ok f v d b x : holdsf s f v d -> in_bounds b x -> below (bounds_reach f b) s (dot v x + d).
+Proof.
+  intros [(H1 & H2 & H3) Hd] (B1 & B2 & B3). unfold bounds_reach, dot.
+  repeat apply below_add; try (apply ends_reach_ok; assumption). apply below_of. exact Hd.
+Qed.
+
+Lemma upper_leb_ok a b : upper_leb a b = true -> upper_le a b.
+Proof. unfold upper_leb, upper_le. rewrite !andb_true_iff, !Z.leb_le. tauto. Qed.
+
+Lemma reach_in_ok f v d l t : holdsf s f v d -> norm v <= V l -> forall best u, reach_in f l t best = Some u ->
+  (forall y, below best s y -> below u s y) /\ forall o x, has t o -> covers s o x -> below u s (dot v x + d).
+Proof.
+  intros Hf Hl. induction t as [o | n b t1 IH1 t2 IH2]; intros best u; cbn [reach_in has].
+  - destruct (reach_one f l o) as [w|] eqn:R; [|discriminate]. cbn [upper_join]. intros [= <-]. split.
+    + intros y. apply below_mono; [exact Hs | apply upper_max_l].
+    + intros o' x -> C. pose proof (reach_one_ok f v d l o' x Hf Hl C) as K. rewrite R in K. cbn [below_opt] in K.
+      eapply below_mono; [exact Hs | apply upper_max_r | exact K].
+  - destruct (match b with Some x => upper_leb (bounds_reach f x) best | None => false end) eqn:P.
+    + intros [= <-]. split; [auto|]. intros o x [_ B] C. destruct b as [b|]; [|discriminate].
+      eapply below_mono; [exact Hs | apply upper_leb_ok; exact P|]. apply bounds_reach_ok; [exact Hf | exact (B s x C)].
+    + destruct (reach_in f l t1 best) as [w|] eqn:E1; [|discriminate]. intros E2.
+      destruct (IH1 _ _ E1) as [M1 K1]. destruct (IH2 _ _ E2) as [M2 K2]. split; [auto|].
+      intros o x [[H|H] _] C; [apply M2; exact (K1 o x H C) | exact (K2 o x H C)].
+Qed.
+
+Lemma reach_ok f v d l t o x : holdsf s f v d -> norm v <= V l -> has t o -> covers s o x ->
+  below_opt (reach f l t) s (dot v x + d).
+Proof.
+  intros Hf Hl I C.
+  assert (K : forall start, below_opt (match start with Some u => reach_in f l t u | None => None end) s (dot v x + d)).
+  { intros [u|]; [|exact Logic.I]. destruct (reach_in f l t u) as [w|] eqn:R; [|exact Logic.I].
+    exact (proj2 (reach_in_ok f v d l t Hf Hl u w R) o x I C). }
+  unfold reach. destruct t as [p | n [b|] t1 t2]; [|apply K | apply K].
+  cbn [has] in I. subst p. exact (reach_one_ok f v d l o x Hf Hl C).
 Qed.
 
 End AtOneTime.
@@ -420,66 +682,195 @@ End AtOneTime.
 (** A body, prepared; a partner with some of its pieces, the margin, rounded up, and the time up to which the pair is
     ignored, rounded down. *)
 Record sbody := Sbody { sb_frame : nat; sb_place : step }.
-Record partner := Partner { p_body : sbody; p_pieces : list outline; p_margin : Z; p_from : Z }.
+Record partner := Partner { p_body : sbody; p_pieces : forest; p_margin : Z; p_from : Z }.
 
-(** A direction that is constant in a frame: three integers in units of 2^-64. *)
-Record direction := Direction { d_frame : nat; d1 : Z; d2 : Z; d3 : Z }.
-Definition length_up (n : direction) : Z := Z.sqrt_up (d1 n * d1 n + d2 n * d2 n + d3 n * d3 n).
-Definition func_of (n : direction) : func := Func (Tvec (const (d1 n) 0) (const (d2 n) 0) (const (d3 n) 0)) tm_zero.
+(** A function f(x) = v.x + d with constant v and d in a frame. It is to be above 0 on A and below on the partners; which
+    of them is a wall, on all of which it is known to be so (or 0)? *)
+Inductive side := NoWall | OwnWall | PartnersWall.
+Record line := Line { l_frame : nat; l_func : func; l_side : side }.
+
+(** A direction as three integers in units of 2^-64. *)
+Definition along (i : nat) (x y z : Z) : line := Line i (Func (Tvec (const x 0) (const y 0) (const z 0)) tm_zero) NoWall.
+
 Definition opposite (f : func) : func :=
   Func (Tvec (tm_opp (tx (fv f))) (tm_opp (ty (fv f))) (tm_opp (tz (fv f)))) (tm_opp (fd f)).
 
-Definition shown (fs : tree) (known : list (nat * func)) (l : Z) (ua : option upper) (p : partner) : bool :=
+(** d - n.x of the wall n.x <= d; of the other side of a plane n.x - d. *)
+Definition wall_func (o : outline) (turned : bool) : option func :=
+  match o with
+  | Outline _ _ => None
+  | Wall n d both =>
+      let f := Func (tm_point n) (tm_opp (tm_number d)) in
+      if turned then (if both then Some f else None) else Some (opposite f)
+  end.
+
+(** The line of a wall, which A or the partner is. *)
+Definition wall_line (A : sbody) (os : forest) (p : partner) (turned : bool) : option line :=
+  match os, p_pieces p with
+  | Piece (Wall _ _ _ as o), _ =>
+      option_map (fun f => Line (sb_frame A) (up (sb_place A) f) OwnWall) (wall_func o turned)
+  | _, Piece o =>
+      option_map (fun f => Line (sb_frame (p_body p)) (up (sb_place (p_body p)) (opposite f)) PartnersWall)
+        (wall_func o turned)
+  | _, _ => None
+  end.
+
+(** At least the length of v. *)
+Definition length_up (v : tvec) : Z :=
+  Z.sqrt_up (bound (tx v) * bound (tx v) + bound (ty v) * bound (ty v) + bound (tz v) * bound (tz v)).
+
+Definition own_reach (sd : side) (f : func) (l : Z) (os : forest) : option upper :=
+  match sd with OwnWall => Some (upper_const 0) | _ => reach (opposite f) l os end.
+Definition partners_reach (sd : side) (f : func) (l : Z) (os : forest) : option upper :=
+  match sd with PartnersWall => Some (upper_const 0) | _ => reach f l os end.
+
+Definition shown (fs : tree) (known : list (nat * func)) (sd : side) (l : Z) (ua : option upper) (p : partner) : bool :=
   match at_frame (length fs) fs known (sb_frame (p_body p)) with
   | None => false
   | Some f =>
-      match ua, reach (down (sb_place (p_body p)) f) l (p_pieces p) with
+      match ua, partners_reach sd (down (sb_place (p_body p)) f) l (p_pieces p) with
       | Some u, Some w => negative (upper_add (upper_add u w) (upper_const (mulup (Z.max 0 (p_margin p)) l)))
-      | _, _ => true                                       (* a body without points *)
+      | _, _ => false
       end
   end.
 
-(** The partners that are not shown to be apart from pieces [os] of A over [a, b]. *)
-Definition not_shown (sfs : list sframe) (q : spiece) (A : sbody) (os : list outline) (n : direction)
-    (ps : list partner) (a b : Z) : list partner :=
-  let fs := tree_at sfs q a b in
-  let known := chain (length fs) fs (d_frame n) (func_of n) in
+(** Poses are computed when they are first asked for, and kept: leaves ask for the same intervals of time. (A coinductive
+    value is lazy in OCaml. In the proofs it is what it will be.) Intervals are kept down to a depth, for memory's sake. *)
+CoInductive delayed := Delayed (fs : tree).
+CoInductive poses := Poses (now : delayed) (halves : option (poses * poses)).
+
+Definition middle (a b : Z) : Z := ((a + b) / 2)%Z.
+CoFixpoint poses_from (depth : nat) (sfs : list sframe) (q : spiece) (a b : Z) : poses :=
+  Poses (Delayed (tree_at sfs q a b))
+    match depth with
+    | O => None
+    | S d => Some (poses_from d sfs q a (middle a b), poses_from d sfs q (middle a b) b)
+    end.
+
+Definition now (ts : poses) : tree := match ts with Poses (Delayed fs) _ => fs end.
+Definition halves (sfs : list sframe) (q : spiece) (ts : poses) (a b : Z) : poses * poses :=
+  match ts with
+  | Poses _ (Some both) => both
+  | Poses _ None => (poses_from 0 sfs q a (middle a b), poses_from 0 sfs q (middle a b) b)
+  end.
+
+(** Some 20,000 poses. *)
+Definition kept_depth (sfs : list sframe) : nat := Z.to_nat (Z.log2 (20000 / (Z.of_nat (length sfs) + 1))).
+
+Definition same (ts : poses) : poses := match ts with Poses x y => Poses x y end.
+Lemma same_is ts : ts = same ts.
+Proof. destruct ts. reflexivity. Qed.
+
+Lemma now_is d sfs q a b : now (poses_from d sfs q a b) = tree_at sfs q a b.
+Proof. rewrite (same_is (poses_from d sfs q a b)). destruct d; reflexivity. Qed.
+Lemma halves_are d sfs q a b : exists e,
+  halves sfs q (poses_from d sfs q a b) a b = (poses_from e sfs q a (middle a b), poses_from e sfs q (middle a b) b).
+Proof.
+  rewrite (same_is (poses_from d sfs q a b)). destruct d as [|d]; [exists O | exists d]; reflexivity.
+Qed.
+
+(** The partners that are not shown to be apart from pieces [os] of A. *)
+Definition not_shown (fs : tree) (A : sbody) (os : forest) (n : line) (ps : list partner) : list partner :=
+  let known := chain (length fs) fs (l_frame n) (l_func n) in
   match at_frame (length fs) fs known (sb_frame A) with
   | None => ps
   | Some f =>
-      let l := length_up n in
-      let ua := reach (opposite (down (sb_place A) f)) l os in
-      filter (fun p => negb (shown fs known l ua p)) ps
+      let l := length_up (fv (l_func n)) in
+      let ua := own_reach (l_side n) (down (sb_place A) f) l os in
+      filter (fun p => negb (shown fs known (l_side n) l ua p)) ps
   end.
 
-(** Time is halved for those that are left, [fuel] times. *)
-Fixpoint separated (fuel : nat) (sfs : list sframe) (q : spiece) (A : sbody) (os : list outline) (n : direction)
-    (ps : list partner) (a b : Z) : bool :=
-  match not_shown sfs q A os n ps a b with
+(** Over [a, b], of which [ts] are the poses. Time is halved for those that are left, [fuel] times. *)
+Fixpoint separated (fuel : nat) (sfs : list sframe) (q : spiece) (A : sbody) (os : forest) (n : line)
+    (ps : list partner) (a b : Z) (ts : poses) : bool :=
+  match ps with
   | [] => true
-  | again =>
-      match fuel with
-      | O => false
-      | S k =>
-          let c := ((a + b) / 2)%Z in
-          separated k sfs q A os n again a c && separated k sfs q A os n again c b
+  | _ =>
+      match not_shown (now ts) A os n ps with
+      | [] => true
+      | again =>
+          match fuel with
+          | O => false
+          | S k =>
+              let (first, second) := halves sfs q ts a b in
+              separated k sfs q A os n again a (middle a b) first && separated k sfs q A os n again (middle a b) b second
+          end
       end
   end.
 
 (** A keeps more than its margin from a partner, where the frames stand at P. *)
-Definition keeps (P : nat -> vec -> vec) (A : sbody) (os : list outline) (p : partner) : Prop :=
+Definition keeps (P : nat -> vec -> vec) (A : sbody) (os : forest) (p : partner) : Prop :=
   forall F G, (forall s, holds_step s (sb_place A) F) -> (forall s, holds_step s (sb_place (p_body p)) G) ->
-  forall x y o o', In o os -> (forall s, covers s o x) -> In o' (p_pieces p) -> (forall s, covers s o' y) ->
+  forall x y o o', has os o -> (forall s, covers s o x) -> has (p_pieces p) o' -> (forall s, covers s o' y) ->
   V (p_margin p) < norm (sub (P (sb_frame A) (F x)) (P (sb_frame (p_body p)) (G y))).
 
-Lemma length_up_ok n : norm (Vec (V (d1 n)) (V (d2 n)) (V (d3 n))) <= V (length_up n).
-Proof. apply integer_length. Qed.
+Lemma length_up_ok s m v : Rabs s <= 1 -> holdsv m s v -> norm v <= V (length_up m).
+Proof.
+  intros Hs (Hx & Hy & Hz). apply (bound_ge _ s _ Hs) in Hx, Hy, Hz.
+  eapply Rle_trans; [|apply (integer_length (bound (tx m)) (bound (ty m)) (bound (tz m)))].
+  unfold norm. apply sqrt_le_1_alt. unfold dot; cbn [vx vy vz].
+  assert (S : forall x y, Rabs x <= y -> x * x <= y * y).
+  { intros x y H. apply abs_in in H. nra. }
+  repeat apply Rplus_le_compat; apply S; assumption.
+Qed.
 
 Lemma opposite_ok s f v d : holdsf s f v d -> holdsf s (opposite f) (scale (-1) v) (- d).
 Proof.
   intros ((A & B & C) & D). split; [|apply holds_opp; exact D]. unfold scale.
   repeat split; cbn [opposite fv tx ty tz vx vy vz];
     (eapply holds_eq; [|apply holds_opp; eassumption]; ring).
+Qed.
+
+(** The line keeps its promise: it is at least 0 on A if A is its wall, at most 0 on the partner if that is. *)
+Definition line_ok (n : line) (A : sbody) (os : forest) (p : partner) : Prop :=
+  forall s F G, Rabs s <= 1 -> holds_step s (sb_place A) F -> holds_step s (sb_place (p_body p)) G ->
+  exists v d, holdsf s (l_func n) v d /\
+    match l_side n with
+    | NoWall => True
+    | OwnWall => l_frame n = sb_frame A /\ forall o x, has os o -> covers s o x -> 0 <= dot v (F x) + d
+    | PartnersWall =>
+        l_frame n = sb_frame (p_body p) /\ forall o y, has (p_pieces p) o -> covers s o y -> dot v (G y) + d <= 0
+    end.
+
+Lemma along_ok i x y z A os p : line_ok (along i x y z) A os p.
+Proof.
+  intros s F G _ _ _. exists (Vec (V x) (V y) (V z)), 0. split; [|exact I].
+  split; [repeat split; apply holds_exact | apply holds_zero].
+Qed.
+
+Lemma wall_func_ok s o turned f : wall_func o turned = Some f ->
+  exists v d, holdsf s f v d /\ forall x, covers s o x -> 0 <= dot v x + d.
+Proof.
+  destruct o as [|n d both]; [discriminate|]. cbn [wall_func]. set (g := Func _ _).
+  assert (H : holdsf s g (point n) (- real d)) by (split; [apply holdsv_point | apply holds_opp, holds_number]).
+  destruct turned; [destruct both; [|discriminate]|]; intros [= <-].
+  - exists (point n), (- real d). split; [exact H|]. intros x [_ E]. rewrite E by reflexivity. lra.
+  - exists (scale (-1) (point n)), (- - real d). split; [apply opposite_ok; exact H|]. intros x [L _].
+    replace (dot (scale (-1) (point n)) x) with (- dot (point n) x) by (unfold dot, scale; cbn [vx vy vz]; ring). lra.
+Qed.
+
+Lemma wall_line_ok A os p turned n : wall_line A os p turned = Some n -> line_ok n A os p.
+Proof.
+  assert (OWN : forall o f, wall_func o turned = Some f -> os = Piece o ->
+    line_ok (Line (sb_frame A) (up (sb_place A) f) OwnWall) A os p).
+  { intros o f W -> s F G Hs HF HG. destruct (wall_func_ok s o turned f W) as (v & d & Hf & K).
+    destruct (up_ok s Hs _ F f v d HF Hf) as (v1 & d1 & H1 & _ & X). exists v1, d1. split; [exact H1|].
+    split; [reflexivity|]. intros o' x <- C. rewrite X. apply K. exact C. }
+  assert (PART : forall o f, wall_func o turned = Some f -> p_pieces p = Piece o ->
+    line_ok (Line (sb_frame (p_body p)) (up (sb_place (p_body p)) (opposite f)) PartnersWall) A os p).
+  { intros o f W E s F G Hs HF HG. destruct (wall_func_ok s o turned f W) as (v & d & Hf & K).
+    destruct (up_ok s Hs _ G _ _ _ HG (opposite_ok s f v d Hf)) as (v1 & d1 & H1 & _ & X). exists v1, d1.
+    split; [exact H1|]. split; [reflexivity|]. intros o' y I C. rewrite E in I. cbn [has] in I. subst o'.
+    specialize (K y C). cbn [l_side]. rewrite X.
+    replace (dot (scale (-1) v) y) with (- dot v y) by (unfold dot, scale; cbn [vx vy vz]; ring). lra. }
+  assert (P : match p_pieces p with Piece o => option_map (fun f =>
+      Line (sb_frame (p_body p)) (up (sb_place (p_body p)) (opposite f)) PartnersWall) (wall_func o turned)
+      | _ => None end = Some n -> line_ok n A os p).
+  { destruct (p_pieces p) as [o|] eqn:E; [|discriminate]. destruct (wall_func o turned) as [f|] eqn:W; [|discriminate].
+    intros [= <-]. apply (PART o f W). first [exact E | reflexivity]. }
+  unfold wall_line. destruct os as [o|]; [|exact P].
+  destruct o as [c r|nn dd bb]; [exact P|]. destruct (wall_func (Wall nn dd bb) turned) as [f|] eqn:W; [|discriminate].
+  intros [= <-]. exact (OWN _ f W eq_refl).
 Qed.
 
 (** Every frame but the world stands in one that is listed before it, and every body in a frame. *)
@@ -496,31 +887,29 @@ Let q := spiece_of pc.
 
 Lemma tree_parents a b k p sts : nth_error (tree_at sfs q a b) k = Some (p, sts) -> (p <= k)%nat.
 Proof.
-  unfold tree_at, sfs. rewrite map_map, nth_error_map. destruct (nth_error (frames w) k) as [f|] eqn:N; [|discriminate].
+  unfold tree_at, tree_of, sfs. rewrite map_map, nth_error_map. destruct (nth_error (frames w) k) as [f|] eqn:N; [|discriminate].
   cbn. intros [= <- _]. apply (proj1 WF). exact N.
 Qed.
 Lemma tree_length a b : length (tree_at sfs q a b) = length (frames w).
-Proof. unfold tree_at, sfs. rewrite !map_length. reflexivity. Qed.
+Proof. unfold tree_at, tree_of, sfs. rewrite !map_length. reflexivity. Qed.
 
-Lemma not_shown_ok A os n ps a b t P p : (d_frame n <= length (frames w))%nat ->
-  V a <= t <= V b -> frames_at w (value pc t) P -> In p ps -> 
-  In p (not_shown sfs q A os n ps a b) \/ keeps P A os p.
+Lemma not_shown_ok A os n ps a b t P p : (l_frame n <= length (frames w))%nat -> line_ok n A os p ->
+  V a <= t <= V b -> frames_at w (at_time pc t) P -> In p ps ->
+  In p (not_shown (tree_at sfs q a b) A os n ps) \/ keeps P A os p.
 Proof.
-  intros Hn Ht HP Ip. unfold not_shown. set (fs := tree_at sfs q a b).
-  set (known := chain (length fs) fs (d_frame n) (func_of n)).
+  intros Hn LO Ht HP Ip. unfold not_shown. set (fs := tree_at sfs q a b).
+  set (known := chain (length fs) fs (l_frame n) (l_func n)). set (l := length_up (fv (l_func n))).
   destruct (at_frame (length fs) fs known (sb_frame A)) as [f|] eqn:EA; [|left; exact Ip].
-  set (ua := reach (opposite (down (sb_place A) f)) (length_up n) os).
-  destruct (shown fs known (length_up n) ua p) eqn:ES.
+  set (ua := own_reach (l_side n) (down (sb_place A) f) l os).
+  destruct (shown fs known (l_side n) l ua p) eqn:ES.
   2:{ left. apply filter_In. split; [exact Ip|]. rewrite ES. reflexivity. }
   right. intros F G HF HG x y o o' Io Co Io' Co'.
   destruct (time_ok a b t Ht) as (s & Hs & Hts).
   specialize (HF s). specialize (HG s). specialize (Co s). specialize (Co' s).
   assert (CH : forall i k sts, nth_error fs i = Some (k, sts) ->
-    exists E, holds_steps s sts E /\ forall x, P (S i) x = P k (E x)) by (apply tree_ok with t; assumption).
-  set (n0 := Vec (V (d1 n)) (V (d2 n)) (V (d3 n))).
-  assert (Hn0 : holdsf s (func_of n) n0 0).
-  { split; [repeat split; apply holds_exact | apply holds_zero]. }
-  destruct (chain_ok s Hs fs P (proj1 HP) CH (length fs) (d_frame n) (func_of n) n0 0) as (wv & e & Nw & _ & K).
+    exists E, holds_steps s sts E /\ forall x, P (S i) x = P k (E x)) by (eapply tree_ok; eassumption).
+  destruct (LO s F G Hs HF HG) as (n0 & d0 & Hn0 & SIDE).
+  destruct (chain_ok s Hs fs P (proj1 HP) CH (length fs) (l_frame n) (l_func n) n0 d0) as (wv & e & Nw & Xw & K).
   - intros k p' sts. apply tree_parents.
   - unfold fs. rewrite tree_length. exact Hn.
   - unfold fs. rewrite tree_length. exact Hn.
@@ -532,23 +921,28 @@ Proof.
     destruct (at_frame (length fs) fs known (sb_frame (p_body p))) as [g|] eqn:EB; [|discriminate].
     pose proof (at_frame_ok s Hs fs P CH (length fs) wv e known K _ g EB) as IB.
     destruct (body_ok s Hs P wv e _ g _ G IB HG) as (vb & db & Hb & Nb & Xb).
-    assert (LN : forall v, dot v v = dot wv wv -> norm v <= V (length_up n)).
-    { intros v E. unfold norm. rewrite E, Nw. apply length_up_ok. }
-    assert (La : norm (scale (-1) va) <= V (length_up n)).
+    assert (LN : forall v, dot v v = dot wv wv -> norm v <= V l).
+    { intros v E. unfold norm. rewrite E, Nw. apply (length_up_ok s); [exact Hs | apply Hn0]. }
+    assert (La : norm (scale (-1) va) <= V l).
     { apply LN. rewrite <- Na. unfold dot, scale; cbn. ring. }
-    pose proof (reach_ok s Hs _ _ _ (length_up n) os o x (opposite_ok _ _ _ _ Ha) La Io Co) as Ra. fold ua in Ra.
-    pose proof (reach_ok s Hs _ _ _ (length_up n) (p_pieces p) o' y Hb (LN _ Nb) Io' Co') as Rb.
-    destruct ua as [u|]; [|destruct Ra]. destruct (reach _ _ (p_pieces p)) as [u'|]; [|destruct Rb].
+    set (X := P (sb_frame A) (F x)) in *. set (Y := P (sb_frame (p_body p)) (G y)) in *.
+    assert (E : dot (scale (-1) va) x + - da = - (dot wv X + e)).
+    { unfold X. rewrite Xa. unfold dot, scale; cbn. ring. }
+    assert (Ra : below_opt ua s (- (dot wv X + e))).
+    { pose proof (reach_ok s Hs _ _ _ l os o x (opposite_ok _ _ _ _ Ha) La Io Co) as Ra. rewrite E in Ra.
+      unfold ua, own_reach. destruct (l_side n); try exact Ra. destruct SIDE as [Q S].
+      apply below_const. specialize (S o x Io Co). rewrite V_0. unfold X. rewrite <- Q, Xw. lra. }
+    set (ub := partners_reach (l_side n) (down (sb_place (p_body p)) g) l (p_pieces p)) in *.
+    assert (Rb : below_opt ub s (dot wv Y + e)).
+    { pose proof (reach_ok s Hs _ _ _ l (p_pieces p) o' y Hb (LN _ Nb) Io' Co') as Rb. rewrite <- Xb in Rb.
+      unfold ub, partners_reach. destruct (l_side n); try exact Rb. destruct SIDE as [Q S].
+      apply below_const. specialize (S o' y Io' Co'). rewrite V_0. unfold Y. rewrite <- Q, Xw. exact S. }
+    destruct ua as [u|]; [|discriminate]. destruct ub as [u'|]; [|discriminate].
     cbn [below_opt] in Ra, Rb.
     set (mz := Z.max 0 (p_margin p)) in *. destruct (V_max 0 (p_margin p)) as [M0 M1]. fold mz in M0, M1. rewrite V_0 in M0.
-    assert (M : V mz * norm wv <= V (mulup mz (length_up n))).
+    assert (M : V mz * norm wv <= V (mulup mz l)).
     { eapply Rle_trans; [|apply mulup_ge]. apply Rmult_le_compat_l; [exact M0 | apply LN; reflexivity]. }
     pose proof (below_negative _ s _ Hs ES (below_add _ _ s _ _ (below_add _ _ s _ _ Ra Rb) (below_const _ s _ M))) as NEG.
-    set (X := P (sb_frame A) (F x)) in *. set (Y := P (sb_frame (p_body p)) (G y)) in *.
-    specialize (Xa x). specialize (Xb y). fold X in Xa. fold Y in Xb.
-    assert (E : dot (scale (-1) va) x + - da = - (dot wv X + e)).
-    { rewrite Xa. unfold dot, scale; cbn. ring. }
-    rewrite E, <- Xb in NEG.
     assert (D : V mz * norm wv < dot wv (sub X Y)).
     { replace (dot wv (sub X Y)) with (dot wv X - dot wv Y) by (unfold dot, sub, add, scale; cbn; ring). lra. }
     pose proof (cauchy wv (sub X Y)) as CS. pose proof (norm_nonneg wv).
@@ -557,16 +951,18 @@ Proof.
     lra.
 Qed.
 
-Theorem separated_ok fuel A os n : (d_frame n <= length (frames w))%nat ->
-  forall ps a b, separated fuel sfs q A os n ps a b = true ->
-  forall t P p, V a <= t <= V b -> frames_at w (value pc t) P -> In p ps -> keeps P A os p.
+Theorem separated_ok fuel A os n : (l_frame n <= length (frames w))%nat ->
+  forall ps a b d, separated fuel sfs q A os n ps a b (poses_from d sfs q a b) = true ->
+  forall t P p, line_ok n A os p -> V a <= t <= V b -> frames_at w (at_time pc t) P -> In p ps -> keeps P A os p.
 Proof.
-  intros Hn. induction fuel as [|k IH]; intros ps a b H t P p Ht HP Ip;
-    destruct (not_shown_ok A os n ps a b t P p Hn Ht HP Ip) as [I|K]; auto; cbn [separated] in H;
-    destruct (not_shown sfs q A os n ps a b) as [|p' again]; try (destruct I; fail); try discriminate.
+  intros Hn. induction fuel as [|k IH]; intros ps a b d H t P p LO Ht HP Ip; cbn [separated] in H;
+    (destruct ps as [|p0 ps0] eqn:EP; [destruct Ip|]; rewrite <- EP in *; clear EP p0 ps0);
+    rewrite now_is in H; destruct (not_shown_ok A os n ps a b t P p Hn LO Ht HP Ip) as [I|K]; auto;
+    destruct (not_shown (tree_at sfs q a b) A os n ps) as [|p' again]; try (destruct I; fail); try discriminate.
+  destruct (halves_are d sfs q a b) as [e E]. rewrite E in H.
   apply andb_true_iff in H. destruct H as [H1 H2].
-  destruct (Rle_lt_dec t (V ((a + b) / 2))) as [L|G]; [eapply IH; [exact H1 | | exact HP | exact I]
-                                                     | eapply IH; [exact H2 | | exact HP | exact I]]; lra.
+  destruct (Rle_lt_dec t (V (middle a b))) as [L|G]; [eapply IH; [exact H1 | exact LO | | exact HP | exact I]
+                                                    | eapply IH; [exact H2 | exact LO | | exact HP | exact I]]; lra.
 Qed.
 
 End Sound.

@@ -51,8 +51,12 @@ Definition has_rotation (p : stated_pose) : bool := existsb (matrix_is_near p) (
 Definition has_direction (a : numbers3) : bool :=
   negb (Z.eqb (mantissa (n1 a)) 0 && Z.eqb (mantissa (n2 a)) 0 && Z.eqb (mantissa (n3 a)) 0).
 Definition element_means (e : element) : bool :=
-  match e with Turn a _ _ _ => has_direction a | Slide a _ _ _ => has_direction a end.
+  match e with Turn a _ _ _ => has_direction a | Slide a _ _ _ => has_direction a | Rotate _ => true end.
 Definition frame_means (f : frame) : bool := has_rotation (origin f) && forallb element_means (elements f).
+
+Definition nothing : numbers3 := let zero := Number 0 0 in Numbers3 zero zero zero.
+Definition piece_means (p : piece) : bool :=
+  forallb (fun o => let '(a, b, c) := snd o in has_rotation (Stated a b c nothing)) (orientations p).
 
 (** ** Proofs *)
 
@@ -96,7 +100,7 @@ Proof.
     by (unfold n, square; cbn [qa qb qc qd]; rewrite !plus_IZR, !mult_IZR; reflexivity).
   assert (R0 : IZR n <> 0) by (apply not_0_IZR; lia).
   pose proof (quaternion_rotation (IZR a) (IZR b) (IZR c) (IZR d) (IZR n) Rn R0) as ROT.
-  eexists. eapply pose_means; [exact ROT | | |]; repeat split; unfold point; cbn [vx vy vz row1 row2 row3];
+  eexists. eapply pose_means. split; [exact ROT|]; repeat split; unfold point; cbn [vx vy vz row1 row2 row3];
     match goal with
     | |- Rabs (_ - real ?x) <= _ =>
         match goal with
@@ -125,33 +129,51 @@ Proof.
     repeat split; unfold Rminus; rewrite Rplus_opp_r, Rabs_R0; exact Z0.
 Qed.
 
-Lemma frame_means_ok f q : frame_means f = true -> exists O M, pose_map (origin f) O /\ elements_map q (elements f) M.
+Definition starts_exist (q : state) := forall v, exists S, start_map (start q v) S.
+
+Lemma piece_means_ok p t : piece_means p = true -> starts_exist (at_time p t).
 Proof.
-  unfold frame_means. rewrite andb_true_iff. intros [H1 H2]. destruct (has_rotation_ok _ H1) as [O HO].
+  unfold piece_means, starts_exist, at_time, orientation; cbn [start]. intros H v.
+  induction (orientations p) as [|[u [[a b] c]] os IH]; cbn [forallb find fst snd option_map] in *.
+  - exists (fun x => x). intros x. reflexivity.
+  - apply andb_true_iff in H. destruct H as [H1 H2]. destruct (Nat.eqb u v); [|exact (IH H2)].
+    cbn [option_map snd start_map]. destruct (has_rotation_ok _ H1) as [M [m R]]. exists (apply m), m.
+    split; [exact R | reflexivity].
+Qed.
+
+Lemma frame_means_ok f q : starts_exist q -> frame_means f = true -> exists O M, pose_map (origin f) O /\ elements_map q (elements f) M.
+Proof.
+  intros HS. unfold frame_means. rewrite andb_true_iff. intros [H1 H2]. destruct (has_rotation_ok _ H1) as [O HO].
   exists O. induction (elements f) as [|e es IH].
   - exists (fun x => x). split; [exact HO | constructor].
   - cbn [forallb] in H2. apply andb_true_iff in H2. destruct H2 as [He Hes].
-    destruct (IH Hes) as (M & _ & HM). destruct e as [a v m c | a v m c]; cbn [element_means] in He;
-      destruct (has_direction_ok a He) as [k Hk].
-    + exists (fun x => turn k (real m * q v + real c) (M x)). split; [exact HO|].
-      apply first_element with (E := turn k (real m * q v + real c)); [apply turn_map; exact Hk | exact HM].
-    + exists (fun x => add (M x) (scale (real m * q v + real c) k)). split; [exact HO|].
-      apply (first_element q (Slide a v m c) es (fun x => add x (scale (real m * q v + real c) k)) M);
+    destruct (IH Hes) as (M & _ & HM). destruct e as [a v m c | a v m c | v]; cbn [element_means] in He.
+    + destruct (has_direction_ok a He) as [k Hk].
+      exists (fun x => turn k (real m * amount q v + real c) (M x)). split; [exact HO|].
+      apply first_element with (E := turn k (real m * amount q v + real c)); [apply turn_map; exact Hk | exact HM].
+    + destruct (has_direction_ok a He) as [k Hk].
+      exists (fun x => add (M x) (scale (real m * amount q v + real c) k)). split; [exact HO|].
+      apply (first_element q (Slide a v m c) es (fun x => add x (scale (real m * amount q v + real c) k)) M);
         [apply slide_map; exact Hk | exact HM].
+    + destruct (HS v) as [S Sv].
+      exists (fun x => rotate (Vec (amount q v) (amount q (v + 1)) (amount q (v + 2))) (S (M x))). split; [exact HO|].
+      apply (first_element q (Rotate v) es
+        (fun x => rotate (Vec (amount q v) (amount q (v + 1)) (amount q (v + 2))) (S x)) M);
+        [apply rotate_map; exact Sv | exact HM].
 Qed.
 
 (** Frames are placed one after the other: each stands in one that has its place already. *)
-Lemma frames_exist w q : (forall i f, nth_error (frames w) i = Some f -> (parent f <= i)%nat) ->
+Lemma frames_exist w q : starts_exist q -> (forall i f, nth_error (frames w) i = Some f -> (parent f <= i)%nat) ->
   forallb frame_means (frames w) = true -> exists P, frames_at w q P.
 Proof.
-  intros WF H. rewrite forallb_forall in H.
+  intros HS WF H. rewrite forallb_forall in H.
   assert (K : forall n, exists P : nat -> vec -> vec, (forall x, P O x = x) /\
     forall i f, (i < n)%nat -> nth_error (frames w) i = Some f ->
       exists O M, pose_map (origin f) O /\ elements_map q (elements f) M /\ forall x, P (S i) x = P (parent f) (O (M x))).
   { induction n as [|n (P & P0 & PS)].
     - exists (fun _ x => x). split; [reflexivity | intros; lia].
     - destruct (nth_error (frames w) n) as [f|] eqn:N.
-      + destruct (frame_means_ok f q (H f (nth_error_In _ _ N))) as (O & M & HO & HM).
+      + destruct (frame_means_ok f q HS (H f (nth_error_In _ _ N))) as (O & M & HO & HM).
         exists (fun j x => if Nat.eqb j (S n) then P (parent f) (O (M x)) else P j x). split; [exact P0|].
         intros i g Hi Ng. pose proof (WF i g Ng) as Wg.
         destruct (Nat.eq_dec i n) as [->|D].

@@ -1,9 +1,8 @@
 (* SPDX-License-Identifier: BSD-3-Clause *)
 (** * What is claimed of a world and a motion
 
-    This file is to be read by people: it is all that the theorem at the end of Walk.v is about. It says in real numbers
-    what doc/CERTIFICATES.md, "What is claimed", says in words, for the part that doc/PROVEN_CHECKER.md names: frames
-    that turn and slide, points with radius, margins, allowed pairs. Nothing here computes. *)
+    This file is to be read by people: it is all that the theorems at the end of Walk.v are about. It says in real numbers
+    what doc/CERTIFICATES.md, "What is claimed", says in words, for all but solids. *)
 From Coq Require Import Reals ZArith String Bool List.
 Import ListNotations.
 Open Scope R_scope.
@@ -47,7 +46,8 @@ Record stated_pose := Stated { r1 : numbers3; r2 : numbers3; r3 : numbers3; shif
 
 Inductive element :=
   | Turn (axis : numbers3) (variable : nat) (multiplier offset : number)
-  | Slide (axis : numbers3) (variable : nat) (multiplier offset : number).
+  | Slide (axis : numbers3) (variable : nat) (multiplier offset : number)
+  | Rotate (variable : nat).                              (* three variables from this one on: a rotation vector *)
 
 (** Frame 0 is the world; the list of a world's frames begins with frame 1. *)
 Record frame := Frame { parent : nat; origin : stated_pose; elements : list element }.
@@ -61,22 +61,31 @@ Inductive geometry :=
   | Ellipsoid (semiaxes : numbers3)
   | Cylinder (radius length : number)
   | Cone (radius length : number)
-  | Hull (points : list numbers3).
+  | Hull (points : list numbers3)
+  | Halfspace (normal : numbers3) (offset : number)
+  | Plane (normal : numbers3) (offset : number).
 
 Inductive role := link | carried | obstacle.
 Record body := Body {
   body_role : role; body_name : string; body_frame : nat; body_place : stated_pose; body_geometry : geometry }.
+
+(** Pairs that are not checked, by names, and why. *)
+Inductive reason := still | neighbours | allowed | touch_link.
+Record unchecked_pair := Unchecked { why : reason; one_name : string; other_name : string }.
 
 Record world := World {
   frames : list frame;
   bodies : list body;
   margins : list (string * number);
   pair_margins : list (string * string * number);
-  unchecked : list (string * string) }.                   (* names of pairs that are not checked *)
+  unchecked : list unchecked_pair }.
 
-(** A piece has a polynomial for each variable, by its coefficients of 1, t, t^2, ..., and pairs of bodies, the lower
-    number first, that are ignored up to a time. *)
-Record piece := Piece { polynomials : list (list number); ignored : list (nat * nat * number) }.
+(** A piece has a polynomial for each variable, by its coefficients of 1, t, t^2, ...; the nine numbers of rotations with
+    which `Rotate` of a variable begins; and pairs of bodies, the lower number first, that are ignored up to a time. *)
+Record piece := Piece {
+  polynomials : list (list number);
+  orientations : list (nat * (numbers3 * numbers3 * numbers3));
+  ignored : list (nat * nat * number) }.
 Record motion := Motion {
   general_margin : number; added_margin : number;
   scope_self : bool; scope_scene : bool;
@@ -92,10 +101,29 @@ Definition point (p : numbers3) : vec := Vec (real (n1 p)) (real (n2 p)) (real (
 Fixpoint polynomial (coefficients : list number) (t : R) : R :=
   match coefficients with [] => 0 | c :: rest => real c + t * polynomial rest t end.
 Definition value (p : piece) (t : R) (variable : nat) : R := polynomial (nth variable (polynomials p) []) t.
+Definition orientation (p : piece) (variable : nat) : option (numbers3 * numbers3 * numbers3) :=
+  option_map snd (find (fun o => Nat.eqb (fst o) variable) (orientations p)).
+
+(** What frames depend on: the values of the variables, and where rotations begin. *)
+Record state := State { amount : nat -> R; start : nat -> option (numbers3 * numbers3 * numbers3) }.
+Definition at_time (p : piece) (t : R) : state := State (value p t) (orientation p).
 
 (** Rodrigues' formula: the turn by [angle] about the unit vector [k]. *)
 Definition turn (k : vec) (angle : R) (x : vec) : vec :=
   add (add (scale (cos angle) x) (scale (sin angle) (cross k x))) (scale ((1 - cos angle) * dot k x) k).
+
+(** The turn about w by its length. *)
+Definition rotate (w : vec) : vec -> vec := turn (scale (/ norm w) w) (norm w).
+
+(** The rotations that nine numbers may mean: all within 2^-49. *)
+Definition rotation_means (a b c : numbers3) (m : mat) :=
+  rotation m /\ near (/ 2 ^ 49) (row1 m) (point a) /\ near (/ 2 ^ 49) (row2 m) (point b) /\
+  near (/ 2 ^ 49) (row3 m) (point c).
+Definition start_map (o : option (numbers3 * numbers3 * numbers3)) (M : vec -> vec) : Prop :=
+  match o with
+  | None => forall x, M x = x
+  | Some (a, b, c) => exists m, rotation_means a b c m /\ forall x, M x = apply m x
+  end.
 
 (** The unit vectors that an axis may mean: exactly the one along it, if two of its numbers are 0; else all that are
     off it by 2^-50 at most. *)
@@ -104,27 +132,26 @@ Definition coordinate_axis (a : vec) :=
 Definition axis_means (a k : vec) :=
   dot k k = 1 /\ near (/ 2 ^ 50) k (scale (/ norm a) a) /\ (coordinate_axis a -> k = scale (/ norm a) a).
 
-(** The maps (of points of the element's own frame) that an element may mean where the variables have the values q. *)
-Inductive element_map (q : nat -> R) : element -> (vec -> vec) -> Prop :=
+(** The maps (of points of the element's own frame) that an element may mean in the state q. *)
+Inductive element_map (q : state) : element -> (vec -> vec) -> Prop :=
   | turn_map a k v m c : axis_means (point a) k ->
-      element_map q (Turn a v m c) (turn k (real m * q v + real c))
+      element_map q (Turn a v m c) (turn k (real m * amount q v + real c))
   | slide_map a k v m c : axis_means (point a) k ->
-      element_map q (Slide a v m c) (fun x => add x (scale (real m * q v + real c) k)).
+      element_map q (Slide a v m c) (fun x => add x (scale (real m * amount q v + real c) k))
+  | rotate_map v S : start_map (start q v) S ->
+      element_map q (Rotate v) (fun x => rotate (Vec (amount q v) (amount q (v + 1)) (amount q (v + 2))) (S x)).
 
-Inductive elements_map (q : nat -> R) : list element -> (vec -> vec) -> Prop :=
+Inductive elements_map (q : state) : list element -> (vec -> vec) -> Prop :=
   | no_element : elements_map q [] (fun x => x)
   | first_element e es E M : element_map q e E -> elements_map q es M ->
       elements_map q (e :: es) (fun x => E (M x)).
 
-(** The maps that twelve numbers may mean: a rotation within 2^-49 of the nine, and exactly the translation. *)
+(** The maps that twelve numbers may mean: a rotation, and exactly the translation. *)
 Inductive pose_map (p : stated_pose) : (vec -> vec) -> Prop :=
-  | pose_means m : rotation m ->
-      near (/ 2 ^ 49) (row1 m) (point (r1 p)) -> near (/ 2 ^ 49) (row2 m) (point (r2 p)) ->
-      near (/ 2 ^ 49) (row3 m) (point (r3 p)) ->
-      pose_map p (fun x => add (apply m x) (point (shift p))).
+  | pose_means m : rotation_means (r1 p) (r2 p) (r3 p) m -> pose_map p (fun x => add (apply m x) (point (shift p))).
 
 (** [P i x] is where the point x of frame i stands in the world. *)
-Definition frames_at (w : world) (q : nat -> R) (P : nat -> vec -> vec) : Prop :=
+Definition frames_at (w : world) (q : state) (P : nat -> vec -> vec) : Prop :=
   (forall x, P O x = x) /\
   (forall i f, nth_error (frames w) i = Some f ->
      exists O M, pose_map (origin f) O /\ elements_map q (elements f) M /\
@@ -154,6 +181,8 @@ Definition inside (g : geometry) (x : vec) : Prop :=
   | Cone r l => exists h, 0 <= h <= 1 /\                  (* h: part of the way from the base to the apex *)
       norm (Vec (vx x) (vy x) 0) <= (1 - h) * real r /\ vz x = h * real l - real l / 2
   | Hull points => in_hull (map point points) x
+  | Halfspace n d => dot (point n) x <= real d
+  | Plane n d => dot (point n) x = real d
   end.
 
 (** y is where a point of body b stands in the world. *)
@@ -170,7 +199,7 @@ Definition same_names (x y a b : string) :=
 Definition checked (w : world) (m : motion) (a b : body) : bool :=
   negb (Nat.eqb (body_frame a) (body_frame b)) &&
   negb (is_obstacle a && is_obstacle b) &&
-  negb (existsb (fun u => same_names (fst u) (snd u) (body_name a) (body_name b)) (unchecked w)) &&
+  negb (existsb (fun u => same_names (one_name u) (other_name u) (body_name a) (body_name b)) (unchecked w)) &&
   (if is_obstacle a || is_obstacle b then scope_scene m else scope_self m).
 
 Definition own_margin (w : world) (a : body) : option number :=
@@ -190,14 +219,62 @@ Definition margin (w : world) (m : motion) (a b : body) : R :=
   | None, None, None => real (general_margin m)
   end.
 
+(** ** Reasons
+
+    Of the reasons for which a pair is not checked, these are claims. *)
+Definition frame_at (w : world) (i : nat) : option frame := match i with O => None | S k => nth_error (frames w) k end.
+Definition elements_at (w : world) (i : nat) : list element :=
+  match frame_at w i with Some f => elements f | None => [] end.
+
+(** The frames from i up to its ancestor c, without c. *)
+Inductive way_up (w : world) : nat -> nat -> list nat -> Prop :=
+  | arrived c : way_up w c c []
+  | one_up i f c l : frame_at w i = Some f -> way_up w (parent f) c l -> way_up w i c (i :: l).
+
+(** [l] has the frames between those of a and b that a common ancestor c does not carry along. *)
+Definition between_frames (w : world) (a b : body) (c : nat) (l : list nat) : Prop :=
+  exists up down, way_up w (body_frame a) c up /\ way_up w (body_frame b) c down /\ l = up ++ down.
+
+Definition moves (w : world) (i : nat) : bool := match elements_at w i with [] => false | _ => true end.
+
+(** Whether elements move freely: they slide by two variables, or rotate after they slid. [slid]: by which variables. *)
+Fixpoint free (slid : list nat) (es : list element) : bool :=
+  match es with
+  | [] => false
+  | Turn _ _ _ _ :: rest => free slid rest
+  | Slide _ v _ _ :: rest => existsb (fun u => negb (Nat.eqb u v)) slid || free (v :: slid) rest
+  | Rotate _ :: rest => match slid with [] => free slid rest | _ => true end
+  end.
+
+Definition is_link (b : body) : Prop := body_role b = link.
+
+Definition reason_holds (w : world) (why : reason) (a b : body) : Prop :=
+  match why with
+  | allowed => True                                       (* the user's word *)
+  | touch_link =>
+      body_role a <> obstacle /\ body_role b <> obstacle /\ (body_role a = carried \/ body_role b = carried)
+  | still => exists c l, between_frames w a b c l /\ forall i, In i l -> moves w i = false
+  | neighbours =>
+      is_link a /\ is_link b /\
+      exists c l, between_frames w a b c l /\
+        (length (filter (moves w) l) <= 1)%nat /\
+        (* no frame between them carries a link *)
+        (forall i d, In i (c :: l) -> i <> body_frame a -> i <> body_frame b ->
+           In d (bodies w) -> is_link d -> body_frame d <> i) /\
+        (* what moves freely there stands on what moves *)
+        (forall i f, In i l -> frame_at w i = Some f -> free [] (elements f) = true ->
+           exists k up, way_up w (parent f) k up /\ moves w k = true)
+  end.
+
 (** ** The claim *)
 
-(** The claim is about something: whatever the values of the variables, frames and bodies can stand as the world says. *)
-Definition meaningful (w : world) :=
-  (forall q, exists P, frames_at w q P) /\ (forall b, In b (bodies w) -> exists B, pose_map (body_place b) B).
+(** The claim is about something: at every time frames and bodies can stand as the world says. *)
+Definition meaningful (w : world) (m : motion) :=
+  (forall p t, In p (pieces m) -> exists P, frames_at w (at_time p t) P) /\
+  (forall b, In b (bodies w) -> exists B, pose_map (body_place b) B).
 
-(** At values q of the variables, whatever the rotations and axes mean, the points of a and b keep their distance. *)
-Definition apart (w : world) (m : motion) (q : nat -> R) (a b : body) : Prop :=
+(** In the state q, whatever the rotations and axes mean, the points of a and b keep their distance. *)
+Definition apart (w : world) (m : motion) (q : state) (a b : body) : Prop :=
   forall P A B, frames_at w q P -> pose_map (body_place a) A -> pose_map (body_place b) B ->
   forall x y, occupies P a A x -> occupies P b B y -> norm (sub x y) > margin w m a b.
 
@@ -205,18 +282,41 @@ Definition apart (w : world) (m : motion) (q : nat -> R) (a b : body) : Prop :=
 Definition ends (m : motion) (k : nat) : R :=
   if Nat.eqb (S k) (length (pieces m)) then real (until m) else 1.
 
-(** A piece begins where the one before ends: each turn and slide differs by 2^-29 and 2^-39 of it (2^-20 at most). *)
+(** A piece begins where the one before ends: each turn and slide differs by 2^-29 and 2^-39 of it (2^-20 at most). The
+    rotation of a frame with `Rotate` differs by 2^-27 in each entry; these are the ways of the frame's coordinate axes. *)
+Definition way (M : vec -> vec) (axis : vec) := sub (M axis) (M (Vec 0 0 0)).
 Definition joined (w : world) (p p' : piece) : Prop :=
   forall f e, In f (frames w) -> In e (elements f) ->
-  let '(v, m) := match e with Turn _ v m _ => (v, m) | Slide _ v m _ => (v, m) end in
-  let x := real m * value p 1 v in
-  Rabs (x - real m * value p' 0 v) <= / 2 ^ 29 + Rmin (Rabs x / 2 ^ 39) (/ 2 ^ 20).
+  match e with
+  | Turn _ v m _ | Slide _ v m _ =>
+      let x := real m * value p 1 v in
+      Rabs (x - real m * value p' 0 v) <= / 2 ^ 29 + Rmin (Rabs x / 2 ^ 39) (/ 2 ^ 20)
+  | Rotate _ =>
+      forall O M M', pose_map (origin f) O -> elements_map (at_time p 1) (elements f) M ->
+      elements_map (at_time p' 0) (elements f) M' ->
+      forall axis, In axis [Vec 1 0 0; Vec 0 1 0; Vec 0 0 1] ->
+      near (/ 2 ^ 27) (way (fun x => O (M x)) axis) (way (fun x => O (M' x)) axis)
+  end.
+
+(** Bodies i and j are checked at time t of piece k, and have a point in common there, wherever rotations and axes let
+    the frames stand; or, if only [near], points that are no farther from each other than the margin. *)
+Definition meets (w : world) (m : motion) (near : bool) (k i j : nat) (t : number) : Prop :=
+  exists p a b, nth_error (pieces m) k = Some p /\ nth_error (bodies w) i = Some a /\ nth_error (bodies w) j = Some b /\
+  (i < j)%nat /\ checked w m a b = true /\ 0 <= real t <= 1 /\ (forall u, In (i, j, u) (ignored p) -> real u < real t) /\
+  forall P A B, frames_at w (at_time p (real t)) P -> pose_map (body_place a) A -> pose_map (body_place b) B ->
+  exists x y, occupies P a A x /\ occupies P b B y /\ if near then norm (sub x y) <= margin w m a b else x = y.
+
+(** Each pair that is listed as unchecked has the reason that is given. *)
+Definition reasons (w : world) : Prop :=
+  forall a b u, In a (bodies w) -> In b (bodies w) -> In u (unchecked w) ->
+  body_frame a <> body_frame b -> is_obstacle a && is_obstacle b = false ->
+  same_names (one_name u) (other_name u) (body_name a) (body_name b) = true -> reason_holds w (why u) a b.
 
 Definition claim (w : world) (m : motion) : Prop :=
-  meaningful w /\
+  meaningful w m /\ reasons w /\
   (forall k p p', nth_error (pieces m) k = Some p -> nth_error (pieces m) (S k) = Some p' -> joined w p p') /\
   forall k p, nth_error (pieces m) k = Some p ->
   forall i j a b, (i < j)%nat -> nth_error (bodies w) i = Some a -> nth_error (bodies w) j = Some b ->
   checked w m a b = true ->
   forall t, 0 <= t <= ends m k -> (forall u, In (i, j, u) (ignored p) -> real u < t) ->
-  apart w m (value p t) a b.
+  apart w m (at_time p t) a b.

@@ -47,21 +47,26 @@ Proof.
   destruct (Nat.even n); cbn; lra.
 Qed.
 
-Lemma partial_holds s a z x0 first n : Rabs s <= 1 -> holds z s (a * a) -> holds x0 s (power_term a first 0) ->
+(** For any terms T that follow each other so. *)
+Definition follows (T : nat -> R) (y : R) (first : nat) : Prop :=
+  forall n, T (S n) = T n * y / IZR ((2 * Z.of_nat n + Z.of_nat first + 1) * (2 * Z.of_nat n + Z.of_nat first + 2)).
+Definition signed_sum (T : nat -> R) (n : nat) : R := sum_f_R0 (fun i => (-1) ^ i * T i) n.
+
+Lemma partial_holds s T y z x0 first n : follows T y first -> Rabs s <= 1 -> holds z s y -> holds x0 s (T O) ->
   let p := partial z x0 (Z.of_nat first) n in
-  holds (term p) s (power_term a first n) /\ holds (sum p) s (series_sum a first n).
+  holds (term p) s (T n) /\ holds (sum p) s (signed_sum T n).
 Proof.
-  intros Hs Hz H0. induction n as [|n [IHt IHs]].
-  - cbn [partial term sum]. split; [exact H0|]. unfold series_sum. cbn [sum_f_R0].
-    replace ((-1) ^ 0 * power_term a first 0) with (power_term a first 0) by (cbn; ring). exact H0.
-  - assert (T : holds (tm_div (tm_mul (term (partial z x0 (Z.of_nat first) n)) z)
-        ((2 * Z.of_nat n + Z.of_nat first + 1) * (2 * Z.of_nat n + Z.of_nat first + 2))) s (power_term a first (S n))).
-    { rewrite power_term_S. apply holds_div; [lia | exact Hs|]. apply holds_mul; assumption. }
-    cbn [partial]. unfold next_term. cbn [term sum]. split; [exact T|].
-    unfold series_sum. cbn [sum_f_R0]. fold (series_sum a first n).
+  intros HT Hs Hz H0. induction n as [|n [IHt IHs]].
+  - cbn [partial term sum]. split; [exact H0|]. unfold signed_sum. cbn [sum_f_R0].
+    replace ((-1) ^ 0 * T O) with (T O) by (cbn; ring). exact H0.
+  - assert (N : holds (tm_div (tm_mul (term (partial z x0 (Z.of_nat first) n)) z)
+        ((2 * Z.of_nat n + Z.of_nat first + 1) * (2 * Z.of_nat n + Z.of_nat first + 2))) s (T (S n))).
+    { rewrite HT. apply holds_div; [lia | exact Hs|]. apply holds_mul; assumption. }
+    cbn [partial]. unfold next_term. cbn [term sum]. split; [exact N|].
+    unfold signed_sum. cbn [sum_f_R0]. fold (signed_sum T n).
     rewrite sign, Nat.even_succ, <- Nat.negb_even. destruct (Nat.even n); cbn [negb].
-    + eapply holds_eq; [|apply holds_sub; [exact IHs | exact T]]. ring.
-    + eapply holds_eq; [|apply holds_add; [exact IHs | exact T]]. ring.
+    + eapply holds_eq; [|apply holds_sub; [exact IHs | exact N]]. ring.
+    + eapply holds_eq; [|apply holds_add; [exact IHs | exact N]]. ring.
 Qed.
 
 (** Enough for numbers up to 2: 2^28 / 28! < 2^-69. *)
@@ -72,21 +77,20 @@ Definition series_tm (z x0 : tm) (first : Z) : tm :=
   let p := partial z x0 first terms in
   widen (sum p) (bound (term (next_term z (2 * Z.of_nat terms + first) (Nat.even terms) p))).
 
-Lemma series_holds s a z x0 first y : Rabs s <= 1 -> holds z s (a * a) -> holds x0 s (power_term a first 0) ->
-  series_sum a first terms <= y <= series_sum a first (S terms) ->
+Lemma series_holds s T yy z x0 first y : follows T yy first -> Rabs s <= 1 -> holds z s yy -> holds x0 s (T O) ->
+  signed_sum T terms <= y <= signed_sum T (S terms) ->
   holds (series_tm z x0 (Z.of_nat first)) s y.
 Proof.
-  intros Hs Hz H0 [L U]. destruct (partial_holds s a z x0 first terms Hs Hz H0) as [_ Hp].
-  destruct (partial_holds s a z x0 first (S terms) Hs Hz H0) as [Ht _]. 
+  intros HT Hs Hz H0 [L U]. destruct (partial_holds s T yy z x0 first terms HT Hs Hz H0) as [_ Hp].
+  destruct (partial_holds s T yy z x0 first (S terms) HT Hs Hz H0) as [Ht _].
   unfold series_tm. eapply holds_widen; [exact Hp|].
-  pose proof (bound_ge _ _ _ Hs Ht) as B. 
+  pose proof (bound_ge _ _ _ Hs Ht) as B.
   change (partial z x0 (Z.of_nat first) (S terms)) with
     (next_term z (2 * Z.of_nat terms + Z.of_nat first) (Nat.even terms) (partial z x0 (Z.of_nat first) terms)) in B.
   eapply Rle_trans; [|exact B].
-  assert (E : series_sum a first (S terms) = series_sum a first terms + (-1) ^ (S terms) * power_term a first (S terms))
-    by reflexivity.
+  assert (E : signed_sum T (S terms) = signed_sum T terms + (-1) ^ (S terms) * T (S terms)) by reflexivity.
   rewrite E in U. rewrite sign in U. change (Nat.even (S terms)) with true in U. cbn iota in U.
-  rewrite (Rabs_right (y - _)) by lra. pose proof (Rle_abs (power_term a first (S terms))). lra.
+  rewrite (Rabs_right (y - _)) by lra. pose proof (Rle_abs (T (S terms))). lra.
 Qed.
 
 Lemma sin_is_series a n : sin_approx a n = series_sum a 1 n.
@@ -106,12 +110,12 @@ Lemma sincos_base_holds s a x : Rabs s <= 1 -> 0 <= a <= 2 -> holds x s a ->
 Proof.
   intros Hs Ha Hx. assert (Hz : holds (tm_mul x x) s (a * a)) by (apply holds_mul; assumption).
   unfold sincos_base. cbn [fst snd]. split.
-  - change 1%Z with (Z.of_nat 1). apply series_holds with a; auto.
+  - change 1%Z with (Z.of_nat 1). apply series_holds with (T := power_term a 1) (yy := a * a); [intro; apply power_term_S | exact Hs | exact Hz | |].
     + eapply holds_eq; [|exact Hx]. unfold power_term. cbn. field.
-    + rewrite <- !sin_is_series. exact (pre_sin_bound a 6 ltac:(lra) ltac:(lra)).
-  - change 0%Z with (Z.of_nat 0). apply series_holds with a; auto.
+    + change (signed_sum (power_term a 1)) with (series_sum a 1). rewrite <- !sin_is_series. exact (pre_sin_bound a 6 ltac:(lra) ltac:(lra)).
+  - change 0%Z with (Z.of_nat 0). apply series_holds with (T := power_term a 0) (yy := a * a); [intro; apply power_term_S | exact Hs | exact Hz | |].
     + eapply holds_eq; [|apply holds_one]. unfold power_term. cbn. field.
-    + rewrite <- !cos_is_series. exact (pre_cos_bound a 6 ltac:(lra) ltac:(lra)).
+    + change (signed_sum (power_term a 0)) with (series_sum a 0). rewrite <- !cos_is_series. exact (pre_cos_bound a 6 ltac:(lra) ltac:(lra)).
 Qed.
 
 (** Of 2^k times the number. *)
@@ -288,4 +292,135 @@ Proof.
       replace y with (V (c0 x) + e) by (unfold e; ring). rewrite sin_plus, cos_plus. cbn [fst snd]. split.
       * apply holds_add; apply holds_mul; assumption.
       * apply holds_sub; apply holds_mul; assumption.
+Qed.
+
+(** ** Of half a rotation vector's length
+
+    For a vector of length r: sin(r/2) / r, or 1/2 where r is 0, and cos(r/2), from a model of r^2. The functions of r
+    below are those of the angle r / 2^k. *)
+Definition sin_part (r : R) (k : nat) : R := if Req_EM_T r 0 then / 2 ^ k else sin (r / 2 ^ k) / r.
+Definition cos_part (r : R) (k : nat) : R := cos (r / 2 ^ k).
+
+Definition part_term (r : R) (k n : nat) : R := / 2 ^ k * ((r / 2 ^ k) ^ (2 * n) / INR (fact (2 * n + 1))).
+
+Lemma part_term_follows r k : follows (part_term r k) (r / 2 ^ k * (r / 2 ^ k)) 1.
+Proof.
+  intros n. unfold part_term. set (a := r / 2 ^ k). replace (2 * S n + 1)%nat with (S (S (2 * n + 1))) by lia.
+  replace (2 * S n)%nat with (S (S (2 * n))) by lia. set (j := (2 * n + 1)%nat).
+  replace (2 * Z.of_nat n + Z.of_nat 1)%Z with (Z.of_nat j) by (unfold j; lia).
+  rewrite mult_IZR, !plus_IZR, <- INR_IZR_INZ.
+  change (fact (S (S j))) with (S (S j) * (S j * fact j))%nat. rewrite !mult_INR, !S_INR, <- !tech_pow_Rmult.
+  pose proof (pos_INR j). pose proof (INR_fact_neq_0 j). assert (2 ^ k <> 0) by (apply pow_nonzero; lra).
+  field. repeat split; try lra; assumption.
+Qed.
+
+Lemma part_sum r k n : r <> 0 -> signed_sum (part_term r k) n = series_sum (r / 2 ^ k) 1 n / r.
+Proof.
+  intros N. unfold signed_sum, series_sum, Rdiv at 1. rewrite Rmult_comm, scal_sum. apply sum_eq. intros i _.
+  unfold part_term, power_term. rewrite pow_add, pow_1. set (f := INR (fact _)). assert (f <> 0) by apply INR_fact_neq_0.
+  assert (2 ^ k <> 0) by (apply pow_nonzero; lra). set (b := (r / 2 ^ k) ^ (2 * i)). field. repeat split; assumption.
+Qed.
+
+Lemma part_sum_0 k n : signed_sum (part_term 0 k) n = / 2 ^ k.
+Proof.
+  assert (Z0 : 0 / 2 ^ k = 0) by (unfold Rdiv; ring). induction n as [|n IH].
+  - unfold signed_sum, part_term; cbn [sum_f_R0 pow fact Nat.mul Nat.add INR]. lra.
+  - unfold signed_sum in *; cbn [sum_f_R0]. rewrite IH. unfold part_term. rewrite Z0, pow_i by lia. unfold Rdiv. ring.
+Qed.
+
+Lemma sin_part_bounds r k : 0 <= r / 2 ^ k <= 2 ->
+  signed_sum (part_term r k) terms <= sin_part r k <= signed_sum (part_term r k) (S terms).
+Proof.
+  intros H. unfold sin_part. destruct (Req_EM_T r 0) as [->|N]; [rewrite !part_sum_0; lra|].
+  assert (P : 0 < 2 ^ k) by (apply pow_lt; lra).
+  assert (R0 : 0 < r).
+  { assert (0 <= r); [|lra]. replace r with (r / 2 ^ k * 2 ^ k) by (field; lra). apply Rmult_le_pos; lra. }
+  rewrite !part_sum by exact N. pose proof (pre_sin_bound (r / 2 ^ k) 6 ltac:(lra) ltac:(lra)) as [L U].
+  rewrite sin_is_series in L, U. assert (I : 0 <= / r) by (left; apply Rinv_0_lt_compat; exact R0).
+  split; apply Rmult_le_compat_r; assumption.
+Qed.
+
+Lemma parts_double r k : sin_part r k = 2 * (sin_part r (S k) * cos_part r (S k)) /\
+  cos_part r k = 1 - 2 * (sin_part r (S k) * sin_part r (S k) * (r * r)).
+Proof.
+  assert (P : 0 < 2 ^ k) by (apply pow_lt; lra).
+  assert (E : r / 2 ^ k = 2 * (r / 2 ^ S k)) by (cbn [pow]; field; lra). unfold sin_part, cos_part. rewrite E.
+  set (b := r / 2 ^ S k). destruct (Req_EM_T r 0) as [Z0|N].
+  - assert (b = 0) as -> by (unfold b; rewrite Z0; unfold Rdiv; ring). rewrite Rmult_0_r, cos_0, Z0. cbn [pow].
+    split; [field; lra | ring].
+  - rewrite sin_2a, cos_2a_sin. split; field; exact N.
+Qed.
+
+(** Numbers in [-1, 1] whose model says less. *)
+Definition clamped (x : tm) : tm := if Z.ltb two (bound x) then const 0 one else x.
+Lemma clamped_holds s x y : Rabs y <= 1 -> holds x s y -> holds (clamped x) s y.
+Proof.
+  intros Hy H. unfold clamped. destruct (Z.ltb two (bound x)); [|exact H]. apply holds_const.
+  rewrite V_0, V_one, Rminus_0_r. exact Hy.
+Qed.
+
+Fixpoint parts_doubled (n : nat) (z : tm) (x : tm * tm) : tm * tm :=
+  match n with
+  | O => x
+  | S n' =>
+      let (a, c) := parts_doubled n' z x in
+      let p := tm_mul a c in let q := tm_mul (tm_mul a a) z in
+      (tm_add p p, clamped (tm_sub tm_one (tm_add q q)))
+  end.
+
+Lemma parts_doubled_holds s r z x k n : Rabs s <= 1 -> holds z s (r * r) ->
+  holds (fst x) s (sin_part r (n + k)) -> holds (snd x) s (cos_part r (n + k)) ->
+  holds (fst (parts_doubled n z x)) s (sin_part r k) /\ holds (snd (parts_doubled n z x)) s (cos_part r k).
+Proof.
+  intros Hs Hz. revert k. induction n as [|n IH]; intros k H1 H2; [split; assumption|].
+  replace (S n + k)%nat with (n + S k)%nat in * by lia. specialize (IH (S k) H1 H2).
+  cbn [parts_doubled]. destruct (parts_doubled n z x) as [a c]. cbn [fst snd] in *. destruct IH as [I1 I2].
+  destruct (parts_double r k) as [E1 E2]. split.
+  - rewrite E1. eapply holds_eq; [|apply holds_add; apply holds_mul; eassumption]. ring.
+  - apply clamped_holds; [apply Rabs_le, COS_bound|]. rewrite E2.
+    eapply holds_eq; [|apply holds_sub; [apply holds_one | apply holds_add; apply holds_mul;
+      try exact Hs; try exact Hz; apply holds_mul; eassumption]]. ring.
+Qed.
+
+(** Sine and cosine parts of half the length, from r^2; none where the length may be beyond 2^60. *)
+Definition half_parts (z : tm) : option (tm * tm) :=
+  let n := Z.to_nat ((Z.log2 (bound z) - 64) / 2 + 1) in
+  let y := tm_div z (4 ^ Z.of_nat (S n)) in
+  if Nat.leb n 60 && Z.leb (bound y) (2 * two) then
+    Some (parts_doubled n z (series_tm y (const (2 ^ (64 - Z.of_nat (S n))) 0) 1, series_tm y tm_one 0))
+  else None.
+
+Lemma half_parts_holds s r z x : 0 <= r -> Rabs s <= 1 -> holds z s (r * r) -> half_parts z = Some x ->
+  holds (fst x) s (sin_part r 1) /\ holds (snd x) s (cos_part r 1).
+Proof.
+  intros Hr Hs Hz. unfold half_parts. set (n := Z.to_nat _). set (k := S n).
+  set (y := tm_div z (4 ^ Z.of_nat k)).
+  destruct (Nat.leb n 60 && Z.leb (bound y) (2 * two)) eqn:C; [|discriminate]. intros E.
+  apply (f_equal (fun o => match o with Some p => p | None => x end)) in E. cbv beta iota in E. subst x.
+  apply andb_true_iff in C. destruct C as [C1 C2]. apply Nat.leb_le in C1. apply Z.leb_le, V_le in C2.
+  assert (P : 0 < 2 ^ k) by (apply pow_lt; lra). set (a := r / 2 ^ k).
+  assert (Hy : holds y s (a * a)).
+  { unfold y. eapply holds_eq; [|apply holds_div; [apply Z.pow_pos_nonneg; lia | exact Hs | exact Hz]].
+    rewrite <- pow_IZR. replace (IZR 4) with (2 * 2) by (cbn; ring). rewrite Rpow_mult_distr. unfold a. field. lra. }
+  assert (A0 : 0 <= a) by (apply Rmult_le_pos; [exact Hr | left; apply Rinv_0_lt_compat; exact P]).
+  assert (A2 : a <= 2).
+  { pose proof (bound_ge _ _ _ Hs Hy) as B. replace (2 * two)%Z with (two + two)%Z in C2 by lia.
+    rewrite V_add, V_two in C2. rewrite Rabs_right in B by nra. nra. }
+  apply (parts_doubled_holds s r z _ 1 n Hs Hz); cbn [fst snd];
+    replace (n + 1)%nat with k by (unfold k; lia).
+  - change 1%Z with (Z.of_nat 1). apply series_holds with (T := part_term r k) (yy := a * a);
+      [apply part_term_follows | exact Hs | exact Hy | | apply sin_part_bounds; split; assumption].
+    eapply holds_eq; [|apply holds_exact]. unfold part_term. cbn [Nat.mul Nat.add fact pow INR]. unfold V.
+    rewrite <- (Z2Nat.id (64 - Z.of_nat k)) by (unfold k; lia). rewrite <- pow_IZR.
+    set (d := Z.to_nat (64 - Z.of_nat k)). pose proof ulp_one as U.
+    assert (ON : IZR one = 2 ^ d * 2 ^ k).
+    { rewrite <- pow_add. replace (d + k)%nat with 64%nat by (unfold d, k; lia).
+      change one with (2 ^ Z.of_nat 64)%Z. rewrite <- pow_IZR. reflexivity. }
+    rewrite ON in U. apply Rmult_eq_reg_r with (2 ^ k); [|lra]. replace (/ 2 ^ k * (1 / 1) * 2 ^ k) with 1 by (field; lra).
+    rewrite <- U. ring.
+  - change 0%Z with (Z.of_nat 0). apply series_holds with (T := power_term a 0) (yy := a * a);
+      [intro; apply power_term_S | exact Hs | exact Hy | |].
+    + eapply holds_eq; [|apply holds_one]. unfold power_term. cbn. field.
+    + change (signed_sum (power_term a 0)) with (series_sum a 0). rewrite <- !cos_is_series.
+      exact (pre_cos_bound a 6 ltac:(lra) ltac:(lra)).
 Qed.

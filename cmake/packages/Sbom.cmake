@@ -12,7 +12,9 @@ set(rows
   "HDF5|BSD-3-Clause|libhdf5-dev|DYNAMIC_LINK" "Open MPI|BSD-3-Clause|libopenmpi-dev|DYNAMIC_LINK"
   "zlib|Zlib|zlib1g-dev|DYNAMIC_LINK" "pybind11|BSD-3-Clause|pybind11-dev|CONTAINS"
   "GMP|LGPL-3.0-or-later OR GPL-2.0-or-later|libgmp-dev|DYNAMIC_LINK"
-  "MPFR|LGPL-3.0-or-later|libmpfr-dev|DYNAMIC_LINK")
+  "MPFR|LGPL-3.0-or-later|libmpfr-dev|DYNAMIC_LINK"
+  "OCaml|LGPL-2.1-only WITH OCaml-LGPL-linking-exception|ocaml-nox|CONTAINS"
+  "Zarith|LGPL-2.0-only WITH OCaml-LGPL-linking-exception|libzarith-ocaml-dev|CONTAINS")
 string(TIMESTAMP now "%Y-%m-%dT%H:%M:%SZ" UTC)
 set(sbom "SPDXVersion: SPDX-2.3
 DataLicense: CC0-1.0

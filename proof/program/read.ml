@@ -42,6 +42,8 @@ let start text file first =
   l
 
 let word l = match l.words with [] -> fail l "a word is missing" | w :: rest -> l.words <- rest; w
+(* A count of lines to come, of at least [shortest] bytes each. *)
+let most_lines = 200 lsl 20
 let last l = if l.words <> [] then fail l "there are too many words"
 
 let integer l below =
@@ -140,19 +142,27 @@ let three l f =
   let n3 = f l in
   { n1; n2; n3 }
 
-let pose l =
+(* Nine numbers near a rotation. *)
+let rotation l =
   let r1 = three l number in
   let r2 = three l number in
   let r3 = three l number in
+  if not (has_rotation { r1; r2; r3; shift = nothing }) then
+    fail l "the nine numbers are not known to be within 2^-49 of a rotation's";
+  (r1, r2, r3)
+
+let pose l =
+  let r1, r2, r3 = rotation l in
   let shift = three l number in
   { r1; r2; r3; shift }
 
 (* ---- The world ---- *)
 
-let rows l what row =
+let rows l what shortest row =
   if not (next l && word l = what) then fail l ("'" ^ what ^ "' is missing");
-  let n = integer l 1_000_000_000 in
+  let n = integer l most_lines in
   if n = 0 then fail l "the count is 0";
+  if n > (String.length l.text - l.at) / shortest then fail l "the text has fewer lines than the count says";
   last l;
   List.init n (fun _ ->
       if not (next l) then fail l "a line is missing";
@@ -168,7 +178,7 @@ let geometry l =
       | "solid" -> scope l "mesh solid"
       | _ -> fail l "a mesh is 'surface' or 'solid'");
       last l;
-      let vertices = Array.of_list (rows l "vertices" (fun l -> three l number)) in
+      let vertices = Array.of_list (rows l "vertices" 12 (fun l -> three l number)) in
       let used = Array.make (Array.length vertices) false in
       let corner l =
         let k = integer l (Array.length vertices) in
@@ -176,7 +186,7 @@ let geometry l =
         vertices.(k)
       in
       let triangles =
-        rows l "triangles" (fun l ->
+        rows l "triangles" 6 (fun l ->
             let a = corner l in
             let b = corner l in
             let c = corner l in
@@ -187,13 +197,13 @@ let geometry l =
   | "boxes" ->
       last l;
       Boxes
-        (rows l "cells" (fun l ->
+        (rows l "cells" 24 (fun l ->
              let centre = three l number in
              let half = three l not_negative in
              (centre, half)))
   | "hull" ->
       last l;
-      Hull (rows l "vertices" (fun l -> three l number))
+      Hull (rows l "vertices" 12 (fun l -> three l number))
   | "box" ->
       let sizes = three l not_negative in
       last l;
@@ -216,12 +226,47 @@ let geometry l =
       let length = not_negative l in
       last l;
       if kind = "cylinder" then Cylinder (r, length) else Cone (r, length)
-  | ("halfspace" | "plane") as kind -> scope l ("geometry " ^ kind)
+  | ("halfspace" | "plane") as kind ->
+      let normal = three l number in
+      let offset = number l in
+      last l;
+      if List.for_all (fun x -> Z.sign x.mantissa = 0) [ normal.n1; normal.n2; normal.n3 ] then
+        fail l "the normal is the zero vector";
+      if kind = "plane" then Plane (normal, offset) else Halfspace (normal, offset)
   | kind -> fail l ("there is no geometry '" ^ kind ^ "'")
+
+(* A world, and what motions are read by. *)
+type known = { w : world; body : body array; moved : bool array; turned : bool array }
+
+let most_pairs = 20_000_000
+
+(* Refuses lines without a meaning: whoever wrote them meant something else. *)
+let refuse_unused l w geometries used =
+  let named = Hashtbl.create 64 in
+  List.iter (fun b -> Hashtbl.add named b.body_name b) w.bodies;
+  let there what name = if not (Hashtbl.mem named name) then fail l (what ^ " names '" ^ name ^ "': no body is called so") in
+  List.iter (fun (a, _) -> there "'margin'" a) w.margins;
+  List.iter (fun ((a, b), _) -> there "'margin'" a; there "'margin'" b) w.pair_margins;
+  List.iter (fun u -> there "'unchecked'" u.one_name; there "'unchecked'" u.other_name) w.unchecked;
+  for k = 0 to geometries - 1 do
+    if not used.(k) then fail l (Printf.sprintf "no body has the geometry %d" k)
+  done;
+  List.iter
+    (fun u ->
+      let others = Hashtbl.find_all named u.other_name in
+      let pair a b = a.body_frame <> b.body_frame && not (a.body_role = Obstacle && b.body_role = Obstacle) in
+      if not (List.exists (fun a -> List.exists (pair a) others) (Hashtbl.find_all named u.one_name)) then
+        fail l
+          (Printf.sprintf "'unchecked' of '%s' and '%s': no two bodies of these names would be checked" u.one_name u.other_name))
+    w.unchecked;
+  let all = List.length w.bodies and obstacles = List.length (List.filter (fun b -> b.body_role = Obstacle) w.bodies) in
+  if ((all * (all - 1)) - (obstacles * (obstacles - 1))) / 2 > most_pairs then
+    fail l "there are more than 20 million pairs to look at"
 
 let world text =
   let l = start text "world" "fcl_artic world 1" in
   let variables = ref 0 and frames = ref [] and frame_count = ref 1 and geometries = ref [||] and bodies = ref [] in
+  let depths = ref [| 0 |] and used = ref [||] in
   let margins = ref [] and pair_margins = ref [] and unchecked = ref [] in
   let same a b (c, d) = (a = c && b = d) || (a = d && b = c) in
   while next l do
@@ -233,6 +278,9 @@ let world text =
     | "frame" ->
         ignore (name l);
         let parent = integer l !frame_count in
+        if !frame_count >= Array.length !depths then depths := Array.append !depths (Array.make !frame_count 0);
+        !depths.(!frame_count) <- !depths.(parent) + 1;
+        if !depths.(parent) >= 1000 then fail l "a chain of more than 1000 frames is not read";
         let origin = pose l in
         last l;
         frames := { parent; origin; elements = [] } :: !frames;
@@ -250,8 +298,17 @@ let world text =
             last l;
             let e = if kind = "turn" then Turn (axis, v, m, c) else Slide (axis, v, m, c) in
             frames := { f with elements = f.elements @ [ e ] } :: rest)
-    | "rotate" -> scope l "rotate"
-    | "geometry" -> geometries := Array.append !geometries [| geometry l |]
+    | "rotate" -> (
+        match !frames with
+        | [] -> fail l "an element comes after its frame"
+        | f :: rest ->
+            let v = integer l !variables in
+            if v + 2 >= !variables then fail l "'rotate' takes three variables";
+            last l;
+            frames := { f with elements = f.elements @ [ Rotate v ] } :: rest)
+    | "geometry" ->
+        geometries := Array.append !geometries [| geometry l |];
+        used := Array.append !used [| false |]
     | "body" ->
         let body_role =
           match word l with
@@ -262,7 +319,9 @@ let world text =
         in
         let body_name = name l in
         let body_frame = integer l !frame_count in
-        let body_geometry = !geometries.(integer l (Array.length !geometries)) in
+        let number = integer l (Array.length !geometries) in
+        !used.(number) <- true;
+        let body_geometry = !geometries.(number) in
         let body_place = pose l in
         last l;
         bodies := { body_role; body_name; body_frame; body_place; body_geometry } :: !bodies
@@ -279,19 +338,35 @@ let world text =
         end;
         last l
     | "unchecked" ->
-        let reason = word l in
-        if not (List.mem reason [ "still"; "neighbours"; "allowed"; "touch-link" ]) then
-          fail l "the reason is still, neighbours, allowed or touch-link";
+        let why =
+          match word l with
+          | "still" -> Still
+          | "neighbours" -> Neighbours
+          | "allowed" -> Allowed
+          | "touch-link" -> Touch_link
+          | _ -> fail l "the reason is still, neighbours, allowed or touch-link"
+        in
         let a = name l in
         let b = name l in
         last l;
-        if List.exists (fun (_, p) -> same a b p) !unchecked then fail l "the pair is listed already";
-        unchecked := (reason, (a, b)) :: !unchecked
+        if List.exists (fun u -> same a b (u.one_name, u.other_name)) !unchecked then fail l "the pair is listed already";
+        unchecked := { why; one_name = a; other_name = b } :: !unchecked
     | kind -> fail l ("there is no item '" ^ kind ^ "'")
   done;
-  ( { frames = List.rev !frames; bodies = List.rev !bodies; margins = !margins; pair_margins = !pair_margins;
-      unchecked = List.map snd !unchecked },
-    !variables )
+  let w =
+    { frames = List.rev !frames; bodies = List.rev !bodies; margins = !margins; pair_margins = !pair_margins;
+      unchecked = !unchecked }
+  in
+  refuse_unused l w (Array.length !geometries) !used;
+  let moved = Array.make !variables false and turned = Array.make !variables false in
+  let element = function
+    | Turn (_, v, _, _) | Slide (_, v, _, _) -> moved.(v) <- true
+    | Rotate v ->
+        Array.fill moved v 3 true;
+        turned.(v) <- true
+  in
+  List.iter (fun f -> List.iter element f.elements) w.frames;
+  { w; body = Array.of_list w.bodies; moved; turned }
 
 (* ---- The motion ---- *)
 
@@ -304,11 +379,19 @@ let fraction l =
   x
 
 (* The motion and the hash of its world. *)
-let motion text variables bodies =
+let motion text known =
+  let variables = Array.length known.moved and bodies = Array.length known.body in
   let l = start text "motion" "fcl_artic motion 1" in
   let world = ref None and margin = ref None and added = ref None and reach = ref None in
   let duration = ref None and until = ref None in
-  let values = ref [] and left_out = ref [] in  (* of each piece, the last one first *)
+  let values = ref [] and turned = ref [] and left_out = ref [] in  (* of each piece, the last one first *)
+  (* A motion of the scope that is read so far. *)
+  let zero = { mantissa = Z.zero; exponent = Z.zero } in
+  let scoped () =
+    let words = Option.value !reach ~default:[] in
+    { general_margin = zero; added_margin = zero; scope_self = List.mem "self" words; scope_scene = List.mem "scene" words;
+      until = zero; pieces = [] }
+  in
   let set item value =
     if !item <> None then fail l "the item is there already";
     if !values <> [] then fail l "the item comes before the first piece";
@@ -330,12 +413,14 @@ let motion text variables bodies =
     | "until" -> set until (fraction l)
     | "piece" ->
         values := Array.make variables [] :: !values;
+        turned := ref [] :: !turned;
         left_out := ref [] :: !left_out
     | "q" -> (
         match !values with
         | [] -> fail l "a 'piece' comes first"
         | piece :: _ ->
             let v = integer l variables in
+            if not known.moved.(v) then fail l "the variable moves nothing";
             if piece.(v) <> [] then fail l "a piece states a variable twice";
             let n = List.length l.words in
             if n < 1 || n > 6 then fail l "a polynomial has 1 to 6 coefficients";
@@ -347,18 +432,25 @@ let motion text variables bodies =
             let a = integer l bodies in
             let b = integer l bodies in
             if a >= b then fail l "of an ignored pair the lower number comes first";
+            if not (checked known.w (scoped ()) known.body.(a) known.body.(b)) then fail l "the pair is not checked anyway";
             list := ((a, b), fraction l) :: !list)
-    | "orientation" -> scope l "orientation"
+    | "orientation" -> (
+        match !turned with
+        | [] -> fail l "a 'piece' comes first"
+        | list :: _ ->
+            let v = integer l variables in
+            let a, b, c = rotation l in
+            if not known.turned.(v) then fail l "the variable is not that of a 'rotate'";
+            if List.mem_assoc v !list then fail l "a piece states a variable twice";
+            list := (v, ((a, b), c)) :: !list)
     | kind -> fail l ("there is no item '" ^ kind ^ "'"));
     last l
   done;
   let need what item = match !item with Some x -> x | None -> fail l (what ^ " is missing") in
-  let zero = { mantissa = Z.zero; exponent = Z.zero } in
   let reach = need "scope" reach in
   if !values = [] then fail l "there is no piece";
-  let pieces =
-    List.rev (List.map2 (fun q i -> { polynomials = Array.to_list q; ignored = !i }) !values !left_out)
-  in
+  let piece q (r, i) = { polynomials = Array.to_list q; orientations = !r; ignored = !i } in
+  let pieces = List.rev (List.map2 piece !values (List.combine !turned !left_out)) in
   ( { general_margin = need "margin" margin; added_margin = Option.value !added ~default:zero;
       scope_self = List.mem "self" reach; scope_scene = List.mem "scene" reach; until = need "until" until; pieces },
     need "world" world )
@@ -401,7 +493,9 @@ let records file =
   let rec go acc =
     if b.pos = String.length file then List.rev acc
     else begin
-      if take b 4 <> "FAC2" then raise (Bad_input "a record does not begin with FAC2");
+      let version = take b 4 in
+      if version = "FAC1" then raise (Bad_input "a record is of format 1, which is not read here: ask for it anew");
+      if version <> "FAC2" then raise (Bad_input "a record does not begin with FAC2");
       let motion = take b (little b 4) in
       let proof = take b (little b 4) in
       go ((motion, proof) :: acc)
@@ -409,13 +503,14 @@ let records file =
   in
   go []
 
-let rec node b depth =
+let rec node b depth times =
   if depth > 400 then raise (Bad_input "the proof is more than 400 nodes deep");
-  let two f =
-    let first = node b (depth + 1) in
-    let second = node b (depth + 1) in
+  let cut times f =
+    let first = node b (depth + 1) times in
+    let second = node b (depth + 1) times in
     f first second
   in
+  let two f = cut times f in
   match byte b with
   | k when k < 6 ->
       let n = if k < 3 then 2 else 4 in
@@ -424,7 +519,11 @@ let rec node b depth =
       let y = entry () in
       let z = entry () in
       Sep ((match k mod 3 with 0 -> InWorld | 1 -> InOwn | _ -> InPartners), x, y, z)
-  | 0x10 -> two (fun l r -> Time (l, r))
+  | 0x09 -> AtWall false
+  | 0x0a -> AtWall true
+  | 0x10 ->
+      if times = 60 then raise (Bad_input "time is cut more than 60 times");
+      cut (times + 1) (fun l r -> Time (l, r))
   | 0x11 ->
       let c = varint b in
       two (fun l r -> Partners (c, l, r))
@@ -434,18 +533,106 @@ let rec node b depth =
   | 0x13 ->
       let c = varint b in
       two (fun l r -> Other (c, l, r))
-  | 0x09 | 0x0a -> raise (Out_of_scope "the proof: WALL")
   | 0x14 -> raise (Out_of_scope "the proof: SOLID")
-  | 0x20 -> raise (Out_of_scope "the proof: a contact")
   | k -> raise (Bad_input (Printf.sprintf "there is no node of kind %d" k))
 
-(* The hash of the motion, the roots, and whether a contact comes after them, which is not looked at. *)
-let proof data =
+(* A double that is a number, of magnitude 2^40 at most. *)
+let double b =
+  let bits = String.get_int64_le (take b 8) 0 in
+  let field shift mask = Int64.to_int (Int64.logand (Int64.shift_right_logical bits shift) mask) in
+  let biased = field 52 0x7ffL and low = field 0 0xfffffffffffffL in
+  let mantissa = if biased = 0 then low else low lor (1 lsl 52) in
+  let exponent = max biased 1 - 1075 in
+  let bits_in_all = Z.numbits (Z.of_int mantissa) + exponent in
+  if bits_in_all > 41 || (bits_in_all = 41 && mantissa land (mantissa - 1) <> 0) then
+    raise (Bad_input "a witness has a number beyond 2^40");
+  let rec least m e = if m land 1 = 0 then least (m lsr 1) (e + 1) else (m, e) in
+  let mantissa, exponent = if mantissa = 0 then (0, 0) else least mantissa exponent in
+  { mantissa = Z.of_int (if Int64.compare bits 0L < 0 then - mantissa else mantissa); exponent = Z.of_int exponent }
+
+(* A contact: in a piece, at a time, of bodies [lower] < [upper]; the witness is about a point of the lower one in the
+   upper one if [of_lower], else the other way round. *)
+type contact = { piece : int; lower : int; upper : int; time : number; of_lower : bool; witness : witness }
+
+let pieces_of = function MeshSurface ts -> List.length ts | Boxes cells -> List.length cells | _ -> 1
+
+let below what b n =
+  let k = varint b in
+  if k >= n then raise (Bad_input ("a witness names " ^ what ^ " that is not there"));
+  k
+
+let place b g =
+  let piece = below "a piece" b (pieces_of g) in
+  let weights vertices =
+    let n = varint b in
+    if n = 0 || n > 16 then raise (Bad_input "a witness' point has 1 to 16 weights");
+    let list =
+      List.init n (fun _ ->
+          let vertex = below "a vertex" b vertices in
+          (vertex, Z.of_int (little b 4)))
+    in
+    if List.for_all (fun (_, x) -> Z.sign x = 0) list then raise (Bad_input "a witness' weights are all 0");
+    Mean (piece, list)
+  in
+  match g with
+  | MeshSurface _ -> weights 3
+  | Hull points -> weights (List.length points)
+  | _ ->
+      let n1 = double b in
+      let n2 = double b in
+      let n3 = double b in
+      Given (piece, { n1; n2; n3 })
+
+let contact b known pieces =
+  let piece = varint b in
+  let one = varint b in
+  let other = varint b in
+  let time = double b in
+  let bodies = Array.length known.body in
+  if piece >= pieces then raise (Bad_input "the contact is in a piece that is not there");
+  if one >= bodies || other >= bodies then raise (Bad_input "the contact's body is not there");
+  if Z.sign time.mantissa < 0 || Z.gt time.mantissa (Z.shift_left Z.one (max 0 (- (Z.to_int time.exponent)))) then
+    raise (Bad_input "the contact's time is not in [0, 1]");
+  let kind = byte b in
+  if kind > 4 then raise (Bad_input (Printf.sprintf "there is no witness of kind %d" kind));
+  let owner, holder = if kind land 1 = 1 then (other, one) else (one, other) in
+  let a = known.body.(owner).body_geometry and c = known.body.(holder).body_geometry in
+  let witness =
+    if kind <= 1 then begin
+      let triangle = varint b in
+      let edge = varint b in
+      let crossed = varint b in
+      match (a, c) with
+      | MeshSurface _, MeshSurface _ when triangle < pieces_of a && crossed < pieces_of c && edge <= 2 ->
+          Cross (triangle, edge, crossed)
+      | _ -> raise (Bad_input "CROSS names a triangle or edge that is not there")
+    end
+    else if kind <= 3 then begin
+      let p = place b a in
+      let container = below "a piece" b (pieces_of c) in
+      let four = match c with Hull points -> List.init 4 (fun _ -> below "a vertex" b (List.length points)) | _ -> [] in
+      Inside (p, container, four)
+    end
+    else begin
+      let p = place b a in
+      let q = place b c in
+      Near (p, q)
+    end
+  in
+  { piece; lower = min one other; upper = max one other; time; of_lower = owner <= holder; witness }
+
+(* The hash of the motion, the roots, and a contact that comes after them. *)
+let proof data known pieces =
   let b = { data; pos = 0 } in
   let hash = take b 32 in
   let rec go acc =
-    if b.pos = String.length data then (hash, List.rev acc, false)
-    else if data.[b.pos] = '\x20' then (hash, List.rev acc, true)
-    else go (node b 0 :: acc)
+    if b.pos = String.length data then (hash, List.rev acc, None)
+    else if data.[b.pos] = '\x20' then begin
+      ignore (byte b);
+      let c = contact b known pieces in
+      if b.pos < String.length data then raise (Bad_input "the proof has bytes after its end");
+      (hash, List.rev acc, Some c)
+    end
+    else go (node b 0 0 :: acc)
   in
   go []

@@ -3,7 +3,7 @@
 """Holds a manual page to what its program says of itself: each option of each verb stands in the section OPTIONS, beside its
 default; and each option of that section is one of a verb.
 
-man_page.py PROGRAM PAGE"""
+man_page.py PROGRAM PAGE [LEAST]      LEAST: how many options there are at least"""
 import pathlib
 import re
 import subprocess
@@ -48,7 +48,7 @@ def numbers_in(text):
     return {float(word.replace(",", "")) for word in re.findall(r"-?\d[\d,]*(?:\.\d+)?(?:e-?\d+)?", text)}
 
 
-def main(program, page):
+def main(program, page, least=15):
     entries = entries_of(pathlib.Path(page).read_text())
     of_page = {}
     for entry in entries:
@@ -71,7 +71,7 @@ def main(program, page):
     faults += [f"{name} of the page is no option of any verb" for name in sorted(set(of_page) - seen)]
     print(f"{len(seen)} options of the program, {len(of_page)} of the page")
     print("\n".join(faults))
-    return 1 if faults or len(seen) < 15 else 0
+    return 1 if faults or len(seen) < int(least) else 0
 
 
 if __name__ == "__main__":
