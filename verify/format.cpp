@@ -308,25 +308,28 @@ void readTolerance(Lines& lines, const IdOf& idOf, World& world) {
     const int variable = static_cast<int>(lines.integer(world.variables.size()));
     is_new = list.emplace(variable, most = lines.notNegative()).second;
   };
-  const auto pose = [&](std::map<int, PoseTolerance>& list, int of, bool pivot) {
+  const auto pose = [&](std::map<int, PoseTolerance>& list, int of) {
     PoseTolerance t{lines.notNegative(), lines.notNegative(), {}};
-    for (double& x : t.pivot) x = pivot ? lines.number() : 0;
+    for (double& x : t.pivot) x = lines.number();
     most = std::max(t.length, t.angle);
     is_new = list.emplace(of, t).second;
   };
   if (kind == "variable") {
     number(world.variable_tolerances);
   } else if (kind == "vector") {
-    number(world.vector_tolerances);
+    const int variable = static_cast<int>(lines.integer(world.variables.size()));
+    const int count = static_cast<int>(lines.integer(4));
+    if (count < 2) lines.fail("a vector has two or three variables");
+    is_new = world.vector_tolerances.emplace(variable, VectorTolerance{count, most = lines.notNegative()}).second;
   } else if (kind == "rotation") {
     number(world.rotation_tolerances);
   } else if (kind == "frame") {
     const int frame = static_cast<int>(lines.integer(world.frames.size()));
     if (frame == 0) lines.fail("frame 0 is the world");
-    pose(world.frame_tolerances, frame, false);
+    pose(world.frame_tolerances, frame);
   } else if (kind == "body") {
     const int name = idOf(lines.name());
-    pose(world.body_tolerances, name, true);
+    pose(world.body_tolerances, name);
   } else {
     lines.fail("a tolerance is of a variable, vector, rotation, frame or body");
   }

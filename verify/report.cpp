@@ -66,16 +66,17 @@ std::vector<std::pair<std::string, std::string>> variablesWithin(const World& wo
   for (std::size_t v = 0; v < world.variables.size(); ++v) {
     const int number = static_cast<int>(v);
     const std::string name = inQuotes(world.variables[v]);
-    const auto one = world.variable_tolerances.find(number), vector = world.vector_tolerances.find(number),
-               rotation = world.rotation_tolerances.find(number);
+    const auto one = world.variable_tolerances.find(number), rotation = world.rotation_tolerances.find(number);
+    const auto vector = world.vector_tolerances.find(number);
     bool of_vector = false;
-    for (int k = number - 2; k <= number; ++k) of_vector = of_vector || world.vector_tolerances.count(k) > 0;
+    for (const auto& [first, t] : world.vector_tolerances)
+      of_vector = of_vector || (number >= first && number < first + t.count);
     if (one != world.variable_tolerances.end())
       list.emplace_back(name, turns[v] && slides[v] ? decimal(one->second) + " rad and m"
                               : turns[v]            ? angleText(one->second)
                                                     : lengthText(one->second));
     if (vector != world.vector_tolerances.end())
-      list.emplace_back("the vector from " + name + " on", lengthText(vector->second));
+      list.emplace_back("the slides from " + name + " on", lengthText(vector->second.length));
     if (rotation != world.rotation_tolerances.end())
       list.emplace_back("the rotation " + name, angleText(rotation->second));
     if (one == world.variable_tolerances.end() && rotation == world.rotation_tolerances.end() && !of_vector && robot[v])
@@ -151,17 +152,16 @@ std::vector<std::string> linesOf(const World& world) {
   std::vector<std::string> tolerances;
   for (const auto& [name, within] : variablesWithin(world)) tolerances.push_back(name + " " + within);
   if (world.gives) addList(lines, "tolerances about the motion", tolerances);
-  const auto pose = [](const std::string& name, const PoseTolerance& t, bool pivot) {
+  const auto pose = [](const std::string& name, const PoseTolerance& t) {
     return name + " within " + poseText(t) +
-           (pivot && t.angle != 0
-                ? " about " + decimal(t.pivot[0]) + " " + decimal(t.pivot[1]) + " " + decimal(t.pivot[2])
-                : "");
+           (t.angle != 0 ? " about " + decimal(t.pivot[0]) + " " + decimal(t.pivot[1]) + " " + decimal(t.pivot[2])
+                         : "");
   };
   std::vector<std::string> frames, bodies;
   for (const auto& [frame, t] : world.frame_tolerances)
-    frames.push_back(pose(inQuotes(world.frames[static_cast<std::size_t>(frame)].name), t, false));
+    frames.push_back(pose(inQuotes(world.frames[static_cast<std::size_t>(frame)].name), t));
   for (const auto& [name, t] : world.body_tolerances)
-    bodies.push_back(pose(inQuotes(world.names[static_cast<std::size_t>(name)]), t, true));
+    bodies.push_back(pose(inQuotes(world.names[static_cast<std::size_t>(name)]), t));
   addList(lines, "tolerances of frames", frames);
   addList(lines, "tolerances of bodies", bodies);
   return lines;

@@ -57,7 +57,13 @@ struct Body {
   int name_id, frame, geometry;
   double numbers[12];
   Pose pose;
-  std::vector<Give> gives;  // of its pose: none or one; in the frame's coordinates
+  std::vector<Give> gives;  // of its pose: none or one; in the geometry's coordinates
+};
+
+/// How far slides by variables that follow each other may lead together from where they are stated to lead.
+struct VectorTolerance {
+  int count;      // of the variables: 2 or 3
+  double length;  // m
 };
 
 /// How far a pose may be from where it is stated.
@@ -87,7 +93,8 @@ struct World {
   std::map<std::pair<int, int>, double> pair_margins;
   std::map<std::pair<int, int>, Unchecked> unchecked;  // by names, the lower number first
   // Tolerances: of variables, of vectors and rotations by their first variable, of frames, of names of bodies.
-  std::map<int, double> variable_tolerances, vector_tolerances, rotation_tolerances;
+  std::map<int, double> variable_tolerances, rotation_tolerances;
+  std::map<int, VectorTolerance> vector_tolerances;
   std::map<int, PoseTolerance> frame_tolerances, body_tolerances;
   // Derived:
   bool gives = false;                          // a frame or body does

@@ -242,10 +242,10 @@ struct Geometry::FarSearch {
     if (bound <= best || node.to <= i || node.from >= j) return;
     budget.spend(4);
     if (node.right != 0) {
-      const Fix a = most(g.nodes_[at + 1].box), b = most(g.nodes_[node.right].box);
-      if (a > b) look(at + 1, a);  // the farther one first
-      look(node.right, b);
-      if (!(a > b)) look(at + 1, a);
+      const Fix left = most(g.nodes_[at + 1].box), right = most(g.nodes_[node.right].box);
+      if (left > right) look(at + 1, left);  // the farther one first
+      look(node.right, right);
+      if (!(left > right)) look(at + 1, left);
       return;
     }
     for (std::uint32_t k = std::max(i, node.from); k < std::min(j, node.to); ++k) {

@@ -36,19 +36,14 @@ Fix product(double multiplier, double tolerance) {
   return mulUp(encloseUp(std::fabs(multiplier)), encloseUp(tolerance));
 }
 
-/// Three slides by the variables v, v + 1, v + 2, from this element on, along three different coordinate axes and by
-/// the same multiplier but for its sign: a vector of them moves by as much as its tolerance says.
-bool isVector(const std::vector<Element>& elements, std::size_t at, int v) {
-  if (elements.size() < at + 3) return false;
-  unsigned along = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Element& e = elements[at + k];
-    if (e.kind != Element::slide || e.variable != v + static_cast<int>(k) || !isCoordinateAxis(e.axis) ||
-        std::fabs(e.multiplier) != std::fabs(elements[at].multiplier))
+/// Whether slides by `count` variables from v on stand one after the other from this element on, all by the same
+/// multiplier but for its sign: what is between them moves as one.
+bool isVector(const std::vector<Element>& elements, std::size_t at, int v, int count) {
+  for (int k = 0; k < count; ++k, ++at)
+    if (at >= elements.size() || elements[at].kind != Element::slide || elements[at].variable != v + k ||
+        std::fabs(elements[at].multiplier) != std::fabs(elements[at - static_cast<std::size_t>(k)].multiplier))
       return false;
-    for (unsigned c = 0; c < 3; ++c) along |= e.axis[c] != 0 ? 1u << c : 0u;
-  }
-  return along == 7;
+  return true;
 }
 
 class Gives {
@@ -59,7 +54,7 @@ class Gives {
     for (std::size_t f = 1; f < world_.frames.size(); ++f) ofFrame(world_.frames[f], static_cast<int>(f));
     ofBodies();
     for (const auto& [v, d] : world_.variable_tolerances) needs(used_, v, "variable", "slides or turns");
-    for (const auto& [v, d] : world_.vector_tolerances) needs(vectors_, v, "vector", "is the first of three slides");
+    for (const auto& [v, d] : world_.vector_tolerances) needs(vectors_, v, "vector", "is the first of such slides");
     for (const auto& [v, d] : world_.rotation_tolerances) needs(rotations_, v, "rotation", "rotates");
   }
 
@@ -98,19 +93,22 @@ class Gives {
     world_.gives = world_.gives || !frame.gives.empty();
   }
 
-  /// The first of three slides takes the tolerance of the vector that they are.
+  /// The first of a vector's slides takes its tolerance.
   void ofVector(const Frame& frame, std::size_t k, Give& give) {
     const Element& e = frame.elements[k];
-    for (int v = e.variable - 2; v <= e.variable; ++v) {
-      if (world_.vector_tolerances.count(v) == 0) continue;
+    for (const auto& [v, vector] : world_.vector_tolerances) {
+      if (e.variable < v || e.variable >= v + vector.count) continue;
       const auto place = static_cast<std::size_t>(e.variable - v);
-      if (place > k || !isVector(frame.elements, k - place, v) || world_.variable_tolerances.count(e.variable) > 0)
+      if (place > k || !isVector(frame.elements, k - place, v, vector.count) || give.slide > Fix{0} || give.axis)
         throw BadInput("world: 'tolerance vector " + std::to_string(v) +
-                       "': its three variables do more than slide along " +
-                       "three coordinate axes, one after the other, or have tolerances of their own");
-      if (place > 0) continue;
+                       "': its variables do more than slide one after the other, or have tolerances of their own");
+      if (place > 0) {
+        give.slide = Fix{};
+        return;
+      }
       vectors_.push_back(v);
-      give.slide = product(e.multiplier, of(world_.vector_tolerances, v));
+      give.slide = product(e.multiplier, vector.length);
+      return;
     }
   }
 
@@ -134,6 +132,9 @@ class Gives {
   World& world_;
   std::vector<int> used_, vectors_, rotations_;  // variables of elements that may have such a tolerance
 };
+
+const Pose kIdentity{
+    {constant(integer(1)), Tm{}, Tm{}, Tm{}, constant(integer(1)), Tm{}, Tm{}, Tm{}, constant(integer(1))}, {}};
 
 Pose operator*(const Pose& a, const Pose& b) {
   return {a.R * b.R, a.R * b.t + a.t};
@@ -176,13 +177,13 @@ Tube::Moves Tube::movesOf(const Part& part, int other) {
   const std::vector<Frame>& frames = world_.frames;
   const Body &own = world_.bodies[part.body], &end = world_.bodies[other];
   Moves moves;
+  for (const Give& give : own.gives) moves.push_back(move(part, give, kIdentity));
   Pose pose = own.pose;  // of the part's geometry, in the coordinates of frame f
   const auto ofFrame = [&](int f, std::size_t k) {
     const Give& give = frames[f].gives[k];
     const bool last = give.element + 1 == static_cast<int>(frames[f].elements.size());
     moves.push_back(move(part, give, last ? pose : poses_.after(f, give.element, span_) * pose));
   };
-  for (const Give& give : own.gives) moves.push_back(move(part, give, pose));
   int f = own.frame, g = end.frame;
   std::vector<int> down;  // frames from the other one up to the common ancestor
   while (f != g) {        // a parent's number is below the frame's own
@@ -201,7 +202,7 @@ Tube::Moves Tube::movesOf(const Part& part, int other) {
     pose = inverse(poses_.local(*at, span_)) * pose;
     for (std::size_t k = 0; k < frames[*at].gives.size(); ++k) ofFrame(*at, k);
   }
-  for (const Give& give : end.gives) moves.push_back(move(part, give, pose));
+  for (const Give& give : end.gives) moves.push_back(move(part, give, inverse(end.pose) * pose));
   return moves;
 }
 

@@ -167,8 +167,8 @@ TEST(VerifyTube, Slides) {
   // A vector of three slides has one length, also along no axis; three tolerances of their own add up.
   const std::string three = "variable x\nvariable y\nvariable z\n",
                     slides = slideLine(0, 1, {1, 0, 0}) + slideLine(1, 1, {0, -1, 0}) + slideLine(2, 1, {0, 0, 1});
-  const World fits = boxOver(three, slides, tolerance("vector 0", 0.9 * (1 - kStill))),
-              none = boxOver(three, slides, tolerance("vector 0", 0.9 * (1 + kStill))),
+  const World fits = boxOver(three, slides, tolerance("vector 0 3", 0.9 * (1 - kStill))),
+              none = boxOver(three, slides, tolerance("vector 0 3", 0.9 * (1 + kStill))),
               sum = boxOver(
                   three, slides,
                   tolerance("variable 0", 0.31) + tolerance("variable 1", 0.31) + tolerance("variable 2", 0.31));
@@ -191,16 +191,16 @@ TEST(VerifyTube, PosesAndRotations) {
   expectExact(rotation, standing(), proofOf(Below::halfspace), kStill);
   // A frame that stands; a motion needs something that moves: a turn below it about the tip.
   const auto frame = [&](double factor) {
-    return kHead + "variable a\nframe base 0 " + hex(kHere) + "\nframe arm 1 " + hex(place) + "\n" + turnLine(0) +
-           lower + tip + "body link tip 2 1 " + hex(kHere) + "\n" + "tolerance frame 1 " + hex(factor * length) + " " +
-           hex(factor * d) + "\n";
+    return kHead + "variable a\nframe base 0 " + hex(at(-2, 0, 0.5)) + "\nframe arm 1 " + hex(at(2, 0, -0.5) * place) +
+           "\n" + turnLine(0) + lower + tip + "body link tip 2 1 " + hex(kHere) + "\n" + "tolerance frame 1 " +
+           hex(factor * length) + " " + hex(factor * d) + " " + hex(V{2, 0, -0.5}) + "\n";
   };
   expectExact(frame, standing(), proofOf(Below::halfspace), kStill);
   // The frame that turns has it itself.
   const auto own = [&](double factor) {
     std::string s = kHead + "variable a\nframe arm 0 " + hex(kHere) + "\n" + turnLine(0) + lower + tip +
                     "body link tip 1 1 " + hex(at(r, 0, 0)) + "\n" + "tolerance frame 1 " + hex(factor * length) + " " +
-                    hex(factor * d) + "\n";
+                    hex(factor * d) + " " + hex(V{0, 0, 0}) + "\n";
     return s;
   };
   MotionText at_angle;
@@ -209,9 +209,9 @@ TEST(VerifyTube, PosesAndRotations) {
   // The floor itself, about a pivot: seen from it the tip moves. And a tip about a pivot of its own.
   for (const std::string name : {"floor", "tip"}) {
     const auto body = [&](double factor) {
-      return kHead + "variable a\nframe arm 0 " + hex(place) + "\n" + turnLine(0) + lower + tip + "body link tip 1 1 " +
-             hex(kHere) + "\n" + "tolerance body " + name + " " + hex(factor * length) + " " + hex(factor * d) + " " +
-             hex(name == "floor" ? V{0, 0, 0} : -1 * place.t) + "\n";
+      return kHead + "variable a\nframe arm 0 " + hex(at(0, 0, -0.75) * place) + "\n" + turnLine(0) + lower + tip +
+             "body link tip 1 1 " + hex(at(0, 0, 0.75)) + "\n" + "tolerance body " + name + " " + hex(factor * length) +
+             " " + hex(factor * d) + " " + hex(name == "floor" ? V{0, 0, 0} : -1 * place.t) + "\n";
     };
     expectExact(body, standing(), proofOf(Below::halfspace), kStill);
   }
@@ -232,18 +232,40 @@ TEST(VerifyTube, BothSidesMayBeSeenFromAnyPlaceBetween) {
   expectRefused(verdict(0.28));
   // Two links of one base: joints on both branches count, each with the points of the side beyond it.
   const auto branches = [&](double a, double b) {
+    const auto place = [](double x, double angle) {
+      M m = rotationAbout({0, 0, 1}, -angle);
+      m.t = turn(m, {x, 0, 0});
+      return m;
+    };
     const World world =
         readWorld(kHead + "variable a\nvariable b\nframe one 0 " + hex(at(-1, 0, 0)) + "\n" + turnLine(0) +
                   "frame two 0 " + hex(at(1, 0, 0)) + "\n" + turnLine(1) + "geometry sphere " + hex(0) +
-                  "\nbody link left 1 0 " + hex(at(0.9, 0, 0)) + "\nbody link right 2 0 " + hex(at(-0.9, 0, 0)) + "\n" +
-                  tolerance("variable 0", a) + tolerance("variable 1", b));
-    return judge(world, standing().write(world), sep({1, 0, 0}));
+                  "\nbody link left 1 0 " + hex(place(0.9, 0.5)) + "\nbody link right 2 0 " + hex(place(-0.9, 1)) +
+                  "\n" + tolerance("variable 0", a) + tolerance("variable 1", b));
+    MotionText m;
+    m.pieces = {"q 0 " + hex(0.5) + "\nq 1 " + hex(1) + "\n"};
+    return judge(world, m.write(world), sep({1, 0, 0}));
   };
   const double all = 2 * std::asin(0.05 / 0.9);  // (chord(a) + chord(b)) 0.9 = 0.2 for a = b
   expectVerified(branches(all * 0.999, all * 0.999));
   expectRefused(branches(all * 1.001, all * 1.001));
   expectVerified(branches(all * 1.2, all * 0.79));
   expectRefused(branches(all * 1.2, all * 0.81));
+}
+
+// A wall on a link of a link: only the points of the other body have a distance from the joints' axes. The second axis
+// is at (1/2, 0) of the first link, which is turned by 1 rad.
+TEST(VerifyTube, AWallThatMovesIsSeenFromItself) {
+  const V there{0.3 * std::cos(1) + 0.5 * std::sin(1) - 0.5, -0.3 * std::sin(1) + 0.5 * std::cos(1), 0};
+  const auto text = [&](double factor) {
+    return kHead + "variable a\nvariable b\nframe one 0 " + hex(kHere) + "\n" + turnLine(0) + "frame two 1 " +
+           hex(at(0.5, 0, 0)) + "\n" + turnLine(1) + "geometry sphere " + hex(0) + "\ngeometry halfspace " +
+           hex(V{0, 1, 0}) + " " + hex(there[1] - chord(0.1) * norm(there)) + "\nbody obstacle point 0 0 " +
+           hex(at(0.3, 0.5, 0)) + "\nbody link wall 2 1 " + hex(kHere) + "\n" + tolerance("variable 1", factor * 0.1);
+  };
+  MotionText m;
+  m.pieces = {"q 0 " + hex(1) + "\n"};
+  expectExact(text, m, proofOf(Below::halfspace), 10 * kStill);
 }
 
 // The distance to the axis grows from 0 to 1 while the tip slides out: the most counts, not the middle's.
@@ -266,6 +288,60 @@ TEST(VerifyTube, TheWholeIntervalCounts) {
     }
 }
 
+// More than half a turn takes the tip to the other side of the axis, and not back from there.
+TEST(VerifyTube, MoreThanHalfATurnIsAllOfTheCircle) {
+  const auto verdict = [](double d, double height) {
+    const World world = readWorld(kHead + "variable a\nframe arm 0 " + hex(kHere) + "\n" + turnLine(0) +
+                                  floorUnder(Below::halfspace, 0, height) + "geometry sphere " + hex(0) +
+                                  "\nbody link tip 1 1 " + hex(at(0, 1, 0)) + "\n" + tolerance("variable 0", d));
+    return judge(world, standing().write(world), std::string(1, '\x09'));
+  };
+  for (const double d : {3.13, kPi, 3.5, 6.28, 100.0}) {
+    expectVerified(verdict(d, -1.0001));
+    expectRefused(verdict(d, -0.999));
+  }
+}
+
+// A planar joint: its frame's origin is where the slides begin, not where they lead.
+TEST(VerifyTube, TheFramesOriginIsBeforeItsElements) {
+  const auto text = [](double factor) {
+    return kHead + "variable x\nvariable y\nvariable a\nframe f 0 " + hex(kHere) + "\n" + slideLine(0, 1, {1, 0, 0}) +
+           slideLine(1, 1, {0, 1, 0}) + turnLine(2) + floorUnder(Below::halfspace, 0, -std::sin(0.05)) +
+           "geometry sphere " + hex(0) + "\nbody link tip 1 1 " + hex(kHere) + "\ntolerance frame 1 " + hex(0) + " " +
+           hex(factor * 0.1) + " " + hex(V{0, 0, 0}) + "\n";
+  };
+  MotionText m;
+  m.pieces = {"q 0 " + hex(std::cos(0.05)) + "\nq 1 " + hex(std::sin(0.05)) + "\nq 2 " + hex(1) + "\n"};
+  expectExact(text, m, proofOf(Below::halfspace), kStill);
+  // The turn's own tolerance: about where the slides lead, where the tip is.
+  const World world = readWorld([&] {
+    std::string s = text(1);
+    return s.substr(0, s.find("tolerance")) + tolerance("variable 2", 3) + tolerance("variable 1", 0.0999);
+  }());
+  expectVerified(judge(world, m.write(world), proofOf(Below::halfspace)));
+}
+
+// Partners of one leaf: each with what it gives itself, and with the joints that lead to it.
+TEST(VerifyTube, PartnersOfOneLeafDiffer) {
+  const auto verdict = [](double first, double second, double joint) {
+    const std::string none = hex(V{0, 0, 0}) + "\n";
+    const World world =
+        readWorld(kHead + "variable x\nvariable y\nframe one 0 " + hex(kHere) + "\n" + slideLine(0, 1, {1, 0, 0}) +
+                  "frame two 1 " + hex(kHere) + "\n" + slideLine(1, 1, {0, 1, 0}) + "geometry sphere " + hex(0.1) +
+                  "\nbody obstacle first 0 0 " + hex(at(0, -1, 0)) + "\nbody obstacle second 0 0 " +
+                  hex(at(0.5, -1, 0)) + "\nbody obstacle third 0 0 " + hex(at(-0.5, -1, 0)) + "\nbody link near 1 0 " +
+                  hex(at(0, -1, 0.5)) + "\nbody link tip 2 0 " + hex(kHere) +
+                  "\nunchecked allowed near first\nunchecked allowed near second\nunchecked allowed near third\n" +
+                  "tolerance body first " + hex(first) + " " + hex(0) + " " + none + "tolerance body second " +
+                  hex(second) + " " + hex(0) + " " + none + tolerance("variable 0", joint));
+    return judge(world, standing().write(world), sep({0, 1, 0}));
+  };
+  expectVerified(verdict(0.3, 0.3, 0.49));
+  expectRefused(verdict(0.31, 0.3, 0.5));
+  expectRefused(verdict(0.3, 0.31, 0.5));
+  expectRefused(verdict(0.1, 0.1, 0.81));
+}
+
 TEST(VerifyTube, MarginsAndTolerancesAddUp) {
   const auto verdict = [&](double margin, double d) {
     const World world = boxOver("variable y\n", slideLine(0, 1, {0, 1, 0}), tolerance("variable 0", d));
@@ -284,7 +360,7 @@ TEST(VerifyTube, WhatBothBodiesShareDoesNotCount) {
       readWorld(kHead + "variable a\nvariable b\nframe one 0 " + hex(kHere) + "\n" + turnLine(0) + "frame two 1 " +
                 hex(at(5, 0, 0)) + "\n" + turnLine(1) + "geometry sphere " + hex(0.1) + "\nbody link left 1 0 " +
                 hex(at(5.5, 0, 0)) + "\nbody link right 2 0 " + hex(kHere) + "\ntolerance variable 0 " + hex(1) +
-                "\ntolerance frame 1 " + hex(9) + " " + hex(3) + "\n");
+                "\ntolerance frame 1 " + hex(9) + " " + hex(3) + " " + hex(V{0, 0, 0}) + "\n");
   expectVerified(judge(world, standing().write(world), sep({-1, 0, 0})));
 }
 
@@ -322,8 +398,10 @@ TEST(VerifyTube, LinesWithoutAMeaningAreRefused) {
     }
   };
   const std::string d = hex(0.1), zero = hex(0);
-  for (const std::string& good : {"variable 0 " + d, "rotation 1 " + d, "vector 4 " + d, "frame 1 " + d + " " + zero,
-                                  "frame 1 " + zero + " " + d, "body ball " + d + " " + d + " " + hex(V{1, 2, 3})})
+  for (const std::string& good :
+       {"variable 0 " + d, "rotation 1 " + d, "vector 4 3 " + d, "vector 4 2 " + d, "vector 5 2 " + d,
+        "frame 1 " + d + " " + zero + " " + hex(V{1, 2, 3}), "frame 1 " + zero + " " + d + " " + hex(V{0, 0, 0}),
+        "body ball " + d + " " + d + " " + hex(V{1, 2, 3})})
     EXPECT_NO_THROW(readWorld(head + "tolerance " + good + "\n")) << good;
   refused("joint 0 " + d, "a tolerance is of a variable, vector, rotation, frame or body");
   refused("variable 0", "a word is missing");
@@ -335,16 +413,19 @@ TEST(VerifyTube, LinesWithoutAMeaningAreRefused) {
   refused("variable 2 " + d, "one of a 'rotate'");
   refused("rotation 0 " + d, "no element rotates by it");
   refused("rotation 2 " + d, "no element rotates by it");
-  refused("vector 0 " + d, "do more than slide");
-  refused("vector 5 " + d, "do more than slide");
-  refused("vector 3 " + d, "do more than slide");
-  refused("vector 4 " + d + "\ntolerance variable 5 " + d, "tolerances of their own");
+  refused("vector 0 2 " + d, "do more than slide");
+  refused("vector 5 3 " + d, "do more than slide");
+  refused("vector 3 3 " + d, "do more than slide");
+  refused("vector 4 3 " + d + "\ntolerance variable 5 " + d, "tolerances of their own");
   refused("variable 0 " + d + "\ntolerance variable 0 " + d, "there already");
+  refused("vector 4 1 " + d, "two or three");
+  refused("vector 4 4 " + d, "not below 4");
+  refused("vector 4 2 " + d + "\ntolerance vector 5 2 " + d, "the first of such slides");
   refused("frame 0 " + d + " " + d, "the world");
   refused("frame 3 " + d + " " + d, "not below 3");
   refused("frame 1 " + d, "a word is missing");
-  refused("frame 1 " + zero + " " + zero, "above 0");
-  refused("frame 2 " + d + " " + d, "no body is in it or below it");
+  refused("frame 1 " + zero + " " + zero + " " + hex(V{1, 2, 3}), "above 0");
+  refused("frame 2 " + d + " " + d + " " + hex(V{1, 2, 3}), "no body is in it or below it");
   refused("body cup " + d + " " + d + " " + hex(V{0, 0, 0}), "no body is called so");
   refused("body ball " + d + " " + d, "a word is missing");
   refused("body ball " + zero + " " + zero + " " + hex(V{0, 0, 0}), "above 0");
@@ -365,7 +446,7 @@ TEST(VerifyTube, SaysWhatIsCovered) {
   EXPECT_EQ(said(tolerance("variable 0", 0.5 * degree)), "for every path within 0.5 deg of it ('j2' 0, 'lift' 0), ");
   EXPECT_EQ(said(tolerance("variable 0", 0.1)),
             "for every path within 0.10000000000000001 rad of it ('j2' 0, 'lift' 0), ");
-  const std::string base = "tolerance frame 1 " + hex(0.002) + " " + hex(0.1 * degree) + "\n",
+  const std::string base = "tolerance frame 1 " + hex(0.002) + " " + hex(0.1 * degree) + " " + hex(V{0, 0, 0}) + "\n",
                     cell = "tolerance body cell " + hex(0.005) + " " + hex(0) + " " + hex(V{9, 0, 0}) + "\n";
   EXPECT_EQ(said(base + cell), "with base 'foot' within 2 mm and 0.1 deg, 'cell' within 5 mm, ");
   const World world = readWorld(arm + base + cell + tolerance("variable 0", 0.3 * degree));
@@ -381,7 +462,7 @@ TEST(VerifyTube, SaysWhatIsCovered) {
   const std::vector<std::string> lines = linesOf(world);
   for (const char* line :
        {"tolerances about the motion: 'j1' 0.3 deg, 'j2' 0, 'lift' 0",
-        "tolerances of frames: 'foot' within 2 mm and 0.1 deg", "tolerances of bodies: 'cell' within 5 mm"})
+        "tolerances of frames: 'foot' within 2 mm and 0.1 deg about 0 0 0", "tolerances of bodies: 'cell' within 5 mm"})
     EXPECT_NE(std::find(lines.begin(), lines.end(), line), lines.end()) << line;
 }
 

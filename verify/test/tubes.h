@@ -16,7 +16,7 @@ constexpr double kPi = 3.14159265358979323846;
 struct Errors {
   std::vector<double> of_variable;
   std::map<int, M> of_rotation, of_frame;  // by variable, by frame
-  std::vector<M> of_body;                  // in the frame's coordinates
+  std::vector<M> of_body;                  // in the geometry's coordinates
 };
 
 /// A rotation by `angle` about a random axis.
@@ -42,8 +42,8 @@ inline Errors anyErrors(Rng& rng, const World& world) {
   errors.of_variable.assign(world.variables.size(), 0);
   for (const auto& [v, d] : world.variable_tolerances)
     errors.of_variable[static_cast<std::size_t>(v)] = (rng() % 2 ? d : -d) * part();
-  for (const auto& [v, d] : world.vector_tolerances) {
-    const V e = anyVector(rng, d * part());
+  for (const auto& [v, d] : world.vector_tolerances) {  // (of three slides along x, y and z here)
+    const V e = anyVector(rng, d.length * part());
     for (std::size_t k = 0; k < 3; ++k) errors.of_variable[static_cast<std::size_t>(v) + k] = e[k];
   }
   for (const auto& [v, d] : world.rotation_tolerances) errors.of_rotation[v] = anyTurn(rng, part() * std::min(d, kPi));
@@ -88,8 +88,8 @@ inline std::vector<M> bodiesWith(const World& world, const Motion& motion, std::
   }
   std::vector<M> all;
   for (std::size_t b = 0; b < world.bodies.size(); ++b)
-    all.push_back(frames[static_cast<std::size_t>(world.bodies[b].frame)] * errors.of_body[b] *
-                  Sampler::stated(world.bodies[b].numbers));
+    all.push_back(frames[static_cast<std::size_t>(world.bodies[b].frame)] * Sampler::stated(world.bodies[b].numbers) *
+                  errors.of_body[b]);
   return all;
 }
 
@@ -149,13 +149,15 @@ inline double movesBetween(const World& world, const Motion& motion, std::size_t
       const Frame& frame = world.frames[static_cast<std::size_t>(up)];
       const V at = frames[static_cast<std::size_t>(up)].t;  // (a frame's slides come before its turns in these tests)
       const PoseTolerance base = of(world.frame_tolerances, up);
-      add(at, base.length, chord(base.angle));
+      add(frames[static_cast<std::size_t>(frame.parent)] * Sampler::stated(frame.numbers) *
+              V{base.pivot[0], base.pivot[1], base.pivot[2]},
+          base.length, chord(base.angle));
       for (const Element& e : frame.elements) {
         const double d = std::fabs(e.multiplier) * of(world.variable_tolerances, e.variable);
         if (e.kind == Element::rotate)
           add(at, 0, chord(of(world.rotation_tolerances, e.variable)));
         else
-          add(at, e.kind == Element::slide ? d + of(world.vector_tolerances, e.variable) : 0,
+          add(at, e.kind == Element::slide ? d + of(world.vector_tolerances, e.variable).length : 0,
               e.kind == Element::turn ? chord(d) : 0);
       }
       up = frame.parent;
@@ -163,7 +165,7 @@ inline double movesBetween(const World& world, const Motion& motion, std::size_t
     for (const int body : {a, b}) {
       const Body& own = world.bodies[static_cast<std::size_t>(body)];
       const PoseTolerance t = of(world.body_tolerances, own.name_id);
-      const V pivot = frames[static_cast<std::size_t>(own.frame)] * V{t.pivot[0], t.pivot[1], t.pivot[2]};
+      const V pivot = bodies[static_cast<std::size_t>(body)] * V{t.pivot[0], t.pivot[1], t.pivot[2]};
       add(pivot, t.length, chord(t.angle));
     }
     most = std::max(most, std::min(sum[0], sum[1]));
@@ -195,6 +197,7 @@ inline ToleranceLines anyTolerances(Rng& rng, const World& world) {
   ToleranceLines t;
   const double size = std::pow(10, uniform(rng, -4, -1.5));
   const auto d = [&]() { return size * uniform(rng, 0.2, 1); };
+  const auto pivot = [&](double far) { return " " + hex(anyVector(rng, far)); };
   for (const Frame& frame : world.frames)
     for (const Element& e : frame.elements) {
       const std::string v = std::to_string(e.variable);
@@ -203,15 +206,14 @@ inline ToleranceLines anyTolerances(Rng& rng, const World& world) {
       else if (frame.elements.size() == 1 && rng() % 5)
         t.lines.push_back({"variable " + v, {d()}, ""});
       else if (frame.elements.size() > 1 && &e == &frame.elements[0])
-        t.lines.push_back({"vector " + v, {d()}, ""});
+        t.lines.push_back({"vector " + v + " 3", {d()}, ""});
     }
-  if (rng() % 2) t.lines.push_back({"frame 1", {d(), d()}, ""});
+  if (rng() % 2) t.lines.push_back({"frame 1", {d(), d()}, pivot(0.3)});
   for (const Body& body : world.bodies)
     if (body.role == Role::obstacle && rng() % 3 == 0 &&
         !world.geometries[static_cast<std::size_t>(body.geometry)].unbounded())
-      t.lines.push_back(
-          {"body " + body.name, {d(), d()}, " " + hex(V{body.numbers[9], body.numbers[10] + 0.1, body.numbers[11]})});
-  if (t.lines.empty()) t.lines.push_back({"frame 1", {d(), d()}, ""});
+      t.lines.push_back({"body " + body.name, {d(), d()}, pivot(0.2)});
+  if (t.lines.empty()) t.lines.push_back({"frame 1", {d(), d()}, pivot(0.3)});
   return t;
 }
 
