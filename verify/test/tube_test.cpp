@@ -177,6 +177,24 @@ TEST(VerifyTube, Slides) {
   expectRefused(judge(sum, standing().write(sum), wall));
 }
 
+// A joint that mimics a vector takes its multiple. Slides that do not follow each other are no vector.
+TEST(VerifyTube, VectorsAreSlidesOneAfterTheOther) {
+  const std::string three = "variable x\nvariable y\nvariable z\n", wall(1, '\x09');
+  const auto slides = [](const std::vector<int>& order, double last) {
+    std::string s;
+    for (const int v : order)
+      s += slideLine(v, v == 1 ? last : -2, {v == 0 ? 1.0 : 0, v == 1 ? 1.0 : 0, v == 2 ? 1.0 : 0});
+    return s;
+  };
+  for (const double d : {0.449, 0.451}) {
+    const World world = boxOver(three, slides({0, 1, 2}, 2), tolerance("vector 0 3", d));
+    EXPECT_EQ(judge(world, standing().write(world), wall).verified, d < 0.45);
+  }
+  EXPECT_NO_THROW(boxOver(three, slides({0, 1, 2}, 2), tolerance("vector 0 2", 1)));
+  EXPECT_THROW(boxOver(three, slides({0, 2, 1}, 2), tolerance("vector 0 2", 1)), BadInput);
+  EXPECT_THROW(boxOver(three, slides({0, 1, 2}, 1), tolerance("vector 0 2", 1)), BadInput);
+}
+
 // What turns about a point by d, whatever the axis, at the angle d/2 over it: straight down by 2 r sin(d/2).
 TEST(VerifyTube, PosesAndRotations) {
   const double d = 0.04, r = 0.6, length = 0.01;
