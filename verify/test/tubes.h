@@ -93,21 +93,6 @@ inline std::vector<M> bodiesWith(const World& world, const Motion& motion, std::
   return all;
 }
 
-/// Whether a sample of the tube is certainly nearer than its margin: then the claim is false.
-inline bool tubeIsFalse(Rng& rng, const World& world, const Motion& motion, int samples, int steps = 60) {
-  for (int n = 0; n < samples; ++n) {
-    const std::size_t piece = static_cast<std::size_t>(rng()) % motion.pieces.size();
-    const double t = (piece + 1 == motion.pieces.size() ? motion.until : 1) * uniform(rng, 0, 1);
-    const std::vector<M> poses = bodiesWith(world, motion, piece, t, anyErrors(rng, world));
-    for (std::size_t a = 0; a < world.bodies.size(); ++a)
-      for (const Opponent& o : opponents(world, motion, piece, static_cast<int>(a)))
-        if (t >= toDouble(o.from) &&
-            upperDistance(world, poses, static_cast<int>(a), o.body, steps) < toDouble(o.margin) - 1e-9)
-          return true;
-  }
-  return false;
-}
-
 /// A ball around the geometry's own origin that holds it; of one without bounds 1e9.
 inline double radiusOf(const Geometry& g) {
   if (g.unbounded()) return 1e9;
@@ -120,6 +105,27 @@ inline double radiusOf(const Geometry& g) {
   double sum = 0;
   for (const double x : g.numbers) sum += std::fabs(x);
   return std::max(radius, sum);
+}
+
+/// Whether a sample of the tube is certainly nearer than its margin, which is above 0: then the claim is false.
+inline bool tubeIsFalse(Rng& rng, const World& world, const Motion& motion, int samples, int steps = 60) {
+  std::vector<double> radii;
+  for (const Body& body : world.bodies)
+    radii.push_back(radiusOf(world.geometries[static_cast<std::size_t>(body.geometry)]));
+  const auto mayBeNear = [&](const std::vector<M>& poses, std::size_t a, std::size_t b, double margin) {
+    return norm(poses[a].t - poses[b].t) <= radii[a] + radii[b] + margin;
+  };
+  for (int n = 0; n < samples; ++n) {
+    const std::size_t piece = static_cast<std::size_t>(rng()) % motion.pieces.size();
+    const double t = (piece + 1 == motion.pieces.size() ? motion.until : 1) * uniform(rng, 0, 1);
+    const std::vector<M> poses = bodiesWith(world, motion, piece, t, anyErrors(rng, world));
+    for (std::size_t a = 0; a < world.bodies.size(); ++a)
+      for (const Opponent& o : opponents(world, motion, piece, static_cast<int>(a)))
+        if (t >= toDouble(o.from) && mayBeNear(poses, a, static_cast<std::size_t>(o.body), toDouble(o.margin)) &&
+            upperDistance(world, poses, static_cast<int>(a), o.body, steps) < toDouble(o.margin) - 1e-9)
+          return true;
+  }
+  return false;
 }
 
 /// About how far tolerances let two bodies move against each other, from samples: seen from whichever body is better.
