@@ -24,7 +24,7 @@ struct Element {
   Mat products;
 };
 
-/// A place between bodies where tolerances let one side move against the other: a point moves there by at most `slide`
+/// A place between bodies where tolerances let one side move against the other. A point moves there by at most `slide`
 /// + `chord` times its distance from an axis or a centre (tube.cpp).
 struct Give {
   int element = -1;   // of the frame; the place is after it, or before all of them

@@ -193,10 +193,10 @@ std::array<Fix, 3> Geometry::reach(std::uint32_t i, std::uint32_t j, const Vec& 
   return most;
 }
 
-/// Branch and bound for the most of |W p + o|^2 over the items [i, j). All values are too large rather than too small:
-/// products are less than 1 ulp too small each, points within 2 ulp of those stated, so a coordinate of W p + o is off
-/// by less than 3 + 2 |w|_1 ulp, w its row of W; `slack` is no less. A node's coordinates have 6 ulp more, so that they
-/// are not below those computed for its items.
+/// Branch and bound for the most of |W p + o|^2 over the items [i, j). All values are too large rather than too small.
+/// Products are less than 1 ulp too small each, and points within 2 ulp of those stated. So a coordinate of W p + o is
+/// off by less than 3 + 2 |w|_1 ulp, w its row of W: `slack` is no less. A node's coordinates have 6 ulp more, so that
+/// they are not below those computed for its items.
 struct Geometry::FarSearch {
   const Geometry& g;
   const std::uint32_t i, j;

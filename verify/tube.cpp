@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sums of TUBES: how far q', poses and calibration that are within their tolerances can bring two bodies nearer to
-// each other than they are on the motion itself. doc/CERTIFICATES.md, "Tolerances", has the derivation.
+// How much nearer two bodies can be than on the motion itself, as joints and poses may be off by their tolerances.
+// The derivation is in doc/TUBES.md.
 #include "tube.h"
 
 #include "places.h"
@@ -36,8 +36,8 @@ Fix product(double multiplier, double tolerance) {
   return mulUp(encloseUp(std::fabs(multiplier)), encloseUp(tolerance));
 }
 
-/// Whether slides by `count` variables from v on stand one after the other from this element on, all by the same
-/// multiplier but for its sign: what is between them moves as one.
+/// Whether slides by `count` variables from v on stand one after the other from this element on. All have the same
+/// multiplier but for its sign.
 bool isVector(const std::vector<Element>& elements, std::size_t at, int v, int count) {
   for (int k = 0; k < count; ++k, ++at)
     if (at >= elements.size() || elements[at].kind != Element::slide || elements[at].variable != v + k ||

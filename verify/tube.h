@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far tolerances let the points of two bodies move against each other: see "Tolerances" in doc/CERTIFICATES.md.
+// How far tolerances let the points of two bodies move against each other: see doc/TUBES.md.
 #pragma once
 
 #include <optional>
@@ -29,7 +29,7 @@ class Tube {
 
  private:
   using Moves = std::vector<std::optional<Lengths>>;
-  /// Of each place on the way from a part to a body that gives: how far the part's points move there at most. None: any
+  /// Bounds on how far the part's points move at each place that gives, on the way from it to a body. None: any
   /// distance.
   Moves movesOf(const Part& part, int other);
   std::optional<Lengths> move(const Part& part, const Give& give, const Pose& pose);

@@ -98,7 +98,7 @@ class Emitter {
   }
 
   /// A task's sets seen from a frame. Partners that stand still in it are `still`: their ends are the same at all
-  /// times, and with tolerances they stand in the world, so that body A strays from all of them alike.
+  /// times. With tolerances they stand in the world: body A strays from all of them alike.
   struct Sets {
     const ProofTask& task;
     int frame;

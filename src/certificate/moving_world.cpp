@@ -267,8 +267,7 @@ double largestDistance(const Geometry& geometry, std::int32_t node, const Vector
     return (d - axis * axis.dot(d)).norm();
   };
   const auto upper = [&](const engine::Node& n) {
-    Vector3d lo, hi;
-    for (int k = 0; k < 3; ++k) lo[k] = static_cast<double>(n.lo[k]), hi[k] = static_cast<double>(n.hi[k]);
+    const Vector3d lo(n.lo[0], n.lo[1], n.lo[2]), hi(n.hi[0], n.hi[1], n.hi[2]);
     return distance(0.5 * (lo + hi)) + 0.5 * (hi - lo).norm();
   };
   double most = 0;

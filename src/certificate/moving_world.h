@@ -51,11 +51,11 @@ class MovingWorld {
   /// Bound, by rule of thumb, on |x''| for the body's points x seen from the frame, around time t.
   double acceleration(int body, int frame, double t);
   /// About the most that tolerances let the points below the two nodes move against each other at time t, seen from
-  /// where that is least (doc/CERTIFICATES.md, "Tolerances").
+  /// where that is least (doc/TUBES.md).
   double stray(int a, std::int32_t node_a, int b, std::int32_t node_b, double t);
   /// The same of one body against a place that stands still in the world.
   double stray(int body, std::int32_t node, double t);
-  /// What the pose of a body gives by itself.
+  /// How far a body strays by the tolerance of its own pose.
   double ownStray(int body, std::int32_t node);
   double margin(int a, int b) const { return world_.marginOf(body(a), body(b), motion_.margin, motion_.added); }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How far the real robot and its scene may be from what a world states, as plain data (doc/CERTIFICATES.md,
-// "Tolerances").
+// How far the real robot and its scene may be from what a world states, as plain data (doc/TUBES.md).
 #pragma once
 
 #include <map>
@@ -12,7 +11,7 @@
 
 namespace fcl_artic::certificate {
 
-/// Of joints, the base and objects. All numbers are finite and at least 0.
+/// Tolerances of joints, the base and objects. All numbers are finite and at least 0.
 struct WorldTolerances {
   struct OfJoint {
     double angle = 0;   ///< rad: of what turns; of a spherical joint and of a floating one's turn the rotation's angle

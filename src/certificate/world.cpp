@@ -135,7 +135,7 @@ std::string toleranceText(const KinematicTree& tree, JointId j, const WorldToler
   return text;
 }
 
-/// What a joint's elements give. @param t  of the joint, or of the one that it mimics.
+/// The gives of a joint's elements. @param t  of the joint, or of the one that it mimics.
 std::vector<Give> givesOf(const std::vector<Element>& elements, const WorldTolerances::OfJoint& t) {
   std::vector<Give> gives;
   bool slid = false;

@@ -195,7 +195,7 @@ TEST(VerifyTube, VectorsAreSlidesOneAfterTheOther) {
   EXPECT_THROW(boxOver(three, slides({0, 1, 2}, 1), tolerance("vector 0 2", 1)), BadInput);
 }
 
-// What turns about a point by d, whatever the axis, at the angle d/2 over it: straight down by 2 r sin(d/2).
+// A tip that turns about a point by d, whatever the axis, from the angle d/2 over it: straight down by 2 r sin(d/2).
 TEST(VerifyTube, PosesAndRotations) {
   const double d = 0.04, r = 0.6, length = 0.01;
   M place = at(r * std::cos(d / 2), r * std::sin(d / 2), 0);

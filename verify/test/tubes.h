@@ -227,7 +227,7 @@ struct TubeCounts {
   int verified = 0, refused = 0, falsified = 0, forged = 0, accepted = 0;
 };
 
-/// Random tubes with proofs by samples. Of those that are verified no sample may be nearer than its margin. Then all
+/// Random tubes with proofs by samples. No sample of a verified one may be nearer than its margin. Then all
 /// tolerances grow until a sample shows the claim to be false: with the same proof, and one made for it, it is refused.
 /// @param verified, forged  ends when there are as many of both.
 inline TubeCounts tubeCampaign(std::uint64_t seed, int verified, int forged, int samples) {

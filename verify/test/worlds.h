@@ -370,7 +370,7 @@ class Prover {
   /// Whether every node that was written is right at its samples.
   bool complete = true;
   int most_time_depth = 6;
-  /// What a pair's margin grows by.
+  /// By how much a pair's margin grows.
   std::function<double(int, int)> more = [](int, int) { return 0.0; };
 
   std::string roots() {
