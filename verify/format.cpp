@@ -287,7 +287,8 @@ void refuseUnused(const World& world) {
   }
   for (std::size_t k = 0; k < there.size(); ++k)
     if (!there[k])
-      throw BadInput("world: 'margin' or 'unchecked' names " + inQuotes(world.names[k]) + ": no body is called so");
+      throw BadInput("world: 'margin', 'tolerance' or 'unchecked' names " + inQuotes(world.names[k]) +
+                     ": no body is called so");
   for (std::size_t k = 0; k < used.size(); ++k)
     if (!used[k]) throw BadInput("world: no body has the geometry " + std::to_string(k));
   for (const auto& [pair, listed] : world.unchecked)
@@ -295,6 +296,45 @@ void refuseUnused(const World& world) {
       throw BadInput("world: 'unchecked' of " + inQuotes(world.names[static_cast<std::size_t>(pair.first)]) + " and " +
                      inQuotes(world.names[static_cast<std::size_t>(pair.second)]) +
                      ": no two bodies of these names would be checked");
+}
+
+/// A line `tolerance` after its first word. @param idOf  the number of a name.
+template <class IdOf>
+void readTolerance(Lines& lines, const IdOf& idOf, World& world) {
+  const std::string_view kind = lines.word();
+  bool is_new = false;
+  double most = 0;
+  const auto number = [&](std::map<int, double>& list) {
+    const int variable = static_cast<int>(lines.integer(world.variables.size()));
+    is_new = list.emplace(variable, most = lines.notNegative()).second;
+  };
+  const auto pose = [&](std::map<int, PoseTolerance>& list, int of) {
+    PoseTolerance t{lines.notNegative(), lines.notNegative(), {}};
+    for (double& x : t.pivot) x = lines.number();
+    most = std::max(t.length, t.angle);
+    is_new = list.emplace(of, t).second;
+  };
+  if (kind == "variable") {
+    number(world.variable_tolerances);
+  } else if (kind == "vector") {
+    const int variable = static_cast<int>(lines.integer(world.variables.size()));
+    const int count = static_cast<int>(lines.integer(4));
+    if (count < 2) lines.fail("a vector has two or three variables");
+    is_new = world.vector_tolerances.emplace(variable, VectorTolerance{count, most = lines.notNegative()}).second;
+  } else if (kind == "rotation") {
+    number(world.rotation_tolerances);
+  } else if (kind == "frame") {
+    const int frame = static_cast<int>(lines.integer(world.frames.size()));
+    if (frame == 0) lines.fail("frame 0 is the world");
+    pose(world.frame_tolerances, frame);
+  } else if (kind == "body") {
+    const int name = idOf(lines.name());
+    pose(world.body_tolerances, name);
+  } else {
+    lines.fail("a tolerance is of a variable, vector, rotation, frame or body");
+  }
+  if (!is_new) lines.fail("the tolerance is there already");
+  if (most == 0) lines.fail("a tolerance is above 0");
 }
 
 World readWorldText(std::string_view text) {
@@ -360,6 +400,8 @@ World readWorldText(std::string_view text) {
         lines.back(second);
         if (!world.margins.emplace(a, lines.notNegative()).second) lines.fail("the name has a margin already");
       }
+    } else if (kind == "tolerance") {
+      readTolerance(lines, idOf, world);
     } else if (kind == "unchecked") {
       const std::string_view reason = lines.word();
       Reason why = Reason::allowed;
@@ -391,6 +433,7 @@ World readWorldText(std::string_view text) {
   if (std::any_of(world.geometries.begin(), world.geometries.end(), solid))
     for (Geometry& g : world.geometries)
       if (!g.solid) g.joinSurfaces();
+  deriveGives(world);
   derivePairs(world);
   refuseUnused(world);
   return world;

@@ -23,11 +23,14 @@ class Poses {
   Tm variable(int v, const Span& span) const;
   /// Valid until the next call.
   const Pose& local(int frame, const Span& span);
+  /// The frame's pose seen from the place after that element of its own; -1: before all of them.
+  Pose after(int frame, int element, const Span& span) const;
   Budget& budget() { return budget_; }
   void spend(std::uint64_t steps) { budget_.spend(steps); }
 
  private:
-  Pose compute(int frame, const Span& span) const;
+  /// The pose followed by the frame's elements from `first` on.
+  Pose compute(int frame, std::size_t first, Pose pose, const Span& span) const;
 
   const World& world_;
   const Piece& piece_;

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "places.h"
+#include "tube.h"
 
 namespace verify {
 
@@ -200,9 +201,10 @@ class Walk {
     return {world_.bodies[wall].frame, wall, f.v, f.d};
   }
 
-  // For all t in the span: max over A of -f + max over a partner of f + margin |v| < 0, by the Bernstein coefficients
-  // of each sum (support.cpp). Partners that are not shown to be apart over the whole span are looked at again over its
-  // halves. (If they are not apart, the first such time ends the search.)
+  // For all t in the span: max over A of -f + max over a partner of f + (margin + M) |v| < 0, by the Bernstein
+  // coefficients of each sum (support.cpp). M is what tolerances add (tube.cpp). Partners that are not shown to be
+  // apart over the whole span are looked at again over its halves. (If they are not apart, the first such time ends the
+  // search.)
   void separated(const Task& task, const std::vector<std::uint32_t>& partners, const Line& line, const Span& span,
                  int halvings) {
     if (partners.empty()) return;
@@ -221,6 +223,7 @@ class Walk {
         return geometryOf(world_, body).reach(i, j, value.v, value.d, length, poses_.budget());
       };
       const std::array<Fix, 3> a = reach(a_, task.from, task.to, true);
+      Tube tube(world_, poses_, span, {a_, task.from, task.to});
       const bool single = task.q - task.p == 1;
       for (const std::uint32_t k : partners) {
         const int body = partners_[k].body;
@@ -228,6 +231,10 @@ class Walk {
         const Fix margin = mulUp(partners_[k].margin, length);
         bool apart = true;
         for (std::size_t i = 0; i < 3; ++i) apart = apart && a[i] + b[i] + margin < Fix{0};
+        if (apart && world_.gives) {
+          const Part partner{body, single ? task.k : 0, single ? task.l : geometryOf(world_, body).pieces()};
+          apart = tube.covers({a[0] + b[0] + margin, a[1] + b[1] + margin, a[2] + b[2] + margin}, length, partner);
+        }
         if (!apart) again.push_back(k);
       }
     } catch (const OutOfRange&) {

@@ -2,7 +2,9 @@
 #include "report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <map>
 
 namespace verify {
@@ -20,6 +22,67 @@ void addList(std::vector<std::string>& lines, const std::string& what, const std
   std::string line = what + ": ";
   for (std::size_t k = 0; k < items.size(); ++k) line += (k > 0 ? ", " : "") + items[k];
   lines.push_back(line);
+}
+
+/// A number in a smaller unit where that is the same but for rounding, as 0.3 deg; else with all of its digits.
+/// @param unit  of `value`. @param part  of it, `count` of which make up a unit.
+std::string inUnit(double value, const char* unit, const char* part, double count) {
+  for (int digits = 1; digits <= 6; ++digits) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.*g", digits, value * count);
+    const double read = std::strtod(text, nullptr);
+    if (std::fabs(read / count - value) <= std::ldexp(value, -50)) return text + std::string(" ") + part;
+  }
+  return decimal(value) + " " + unit;
+}
+std::string angleText(double rad) {
+  return inUnit(rad, "rad", "deg", 180 / 3.14159265358979323846);
+}
+std::string lengthText(double metres) {
+  return inUnit(metres, "m", "mm", 1000);
+}
+std::string poseText(const PoseTolerance& t) {
+  if (t.angle == 0) return lengthText(t.length);
+  return t.length == 0 ? angleText(t.angle) : lengthText(t.length) + " and " + angleText(t.angle);
+}
+
+/// How far variables may be from the motion, in words, of those that have a tolerance, and "0" of those that have none
+/// but move a body that is no obstacle.
+std::vector<std::pair<std::string, std::string>> variablesWithin(const World& world) {
+  std::vector<char> turns(world.variables.size(), 0), slides = turns, robot = turns;
+  std::vector<char> carries(world.frames.size(), 0);  // a body that is no obstacle, here or below
+  for (const Body& body : world.bodies)
+    if (body.role != Role::obstacle) carries[static_cast<std::size_t>(body.frame)] = 1;
+  for (std::size_t f = world.frames.size(); f-- > 1;) {
+    const Frame& frame = world.frames[f];
+    if (carries[f]) carries[static_cast<std::size_t>(frame.parent)] = 1;
+    for (const Element& e : frame.elements) {
+      const auto v = static_cast<std::size_t>(e.variable);
+      (e.kind == Element::slide ? slides : turns)[v] = 1;
+      robot[v] = robot[v] || carries[f];
+    }
+  }
+  std::vector<std::pair<std::string, std::string>> list;
+  for (std::size_t v = 0; v < world.variables.size(); ++v) {
+    const int number = static_cast<int>(v);
+    const std::string name = inQuotes(world.variables[v]);
+    const auto one = world.variable_tolerances.find(number), rotation = world.rotation_tolerances.find(number);
+    const auto vector = world.vector_tolerances.find(number);
+    bool of_vector = false;
+    for (const auto& [first, t] : world.vector_tolerances)
+      of_vector = of_vector || (number >= first && number < first + t.count);
+    if (one != world.variable_tolerances.end())
+      list.emplace_back(name, turns[v] && slides[v] ? decimal(one->second) + " rad and m"
+                              : turns[v]            ? angleText(one->second)
+                                                    : lengthText(one->second));
+    if (vector != world.vector_tolerances.end())
+      list.emplace_back("the slides from " + name + " on", lengthText(vector->second.length));
+    if (rotation != world.rotation_tolerances.end())
+      list.emplace_back("the rotation " + name, angleText(rotation->second));
+    if (one == world.variable_tolerances.end() && rotation == world.rotation_tolerances.end() && !of_vector && robot[v])
+      list.emplace_back(name, "0");
+  }
+  return list;
 }
 
 /// The nearest frame above a body that moves; 0: it stands still.
@@ -86,7 +149,47 @@ std::vector<std::string> linesOf(const World& world) {
     margins.push_back(inQuotes(world.names[static_cast<std::size_t>(pair.first)]) + " and " +
                       inQuotes(world.names[static_cast<std::size_t>(pair.second)]) + " " + decimal(margin) + " m");
   addList(lines, "margins of their own", margins);
+  std::vector<std::string> tolerances;
+  for (const auto& [name, within] : variablesWithin(world)) tolerances.push_back(name + " " + within);
+  if (world.gives) addList(lines, "tolerances about the motion", tolerances);
+  const auto pose = [](const std::string& name, const PoseTolerance& t) {
+    return name + " within " + poseText(t) +
+           (t.angle != 0 ? " about " + decimal(t.pivot[0]) + " " + decimal(t.pivot[1]) + " " + decimal(t.pivot[2])
+                         : "");
+  };
+  std::vector<std::string> frames, bodies;
+  for (const auto& [frame, t] : world.frame_tolerances)
+    frames.push_back(pose(inQuotes(world.frames[static_cast<std::size_t>(frame)].name), t));
+  for (const auto& [name, t] : world.body_tolerances)
+    bodies.push_back(pose(inQuotes(world.names[static_cast<std::size_t>(name)]), t));
+  addList(lines, "tolerances of frames", frames);
+  addList(lines, "tolerances of bodies", bodies);
   return lines;
+}
+
+std::string coveredBy(const World& world) {
+  if (!world.gives) return "";
+  const auto variables = variablesWithin(world);
+  std::map<std::string, std::size_t> counts;
+  std::string most;  // the tolerance that most variables have
+  for (const auto& [name, within] : variables)
+    if (within != "0" && (++counts[within] > counts[most] || most.empty())) most = within;
+  std::string text;
+  if (!most.empty()) {
+    std::string others;
+    for (const auto& [name, within] : variables)
+      if (within != most) others += (others.empty() ? " (" : ", ") + name + " " + within;
+    text = "for every path within " + most + " of it" + others + (others.empty() ? "" : ")");
+  }
+  const auto add = [&](const std::string& who, const PoseTolerance& t) {
+    text += (text.empty() ? "with " : ", ") + who + " within " + poseText(t);
+  };
+  for (const auto& [frame, t] : world.frame_tolerances)
+    add((carrierOf(world, frame) == 0 ? "base " : "frame ") +
+            inQuotes(world.frames[static_cast<std::size_t>(frame)].name),
+        t);
+  for (const auto& [name, t] : world.body_tolerances) add(inQuotes(world.names[static_cast<std::size_t>(name)]), t);
+  return text + ", ";
 }
 
 std::vector<std::string> linesOf(const World& world, const Motion& motion, const Verdict& verdict) {
@@ -125,7 +228,7 @@ std::string lineOf(const Verdict& v, const Subject& s) {
   if (!v.verified) return "NOT VERIFIED: " + shown(v.reason);
   std::string line = s.robot + " moves " + s.motion + " " + s.scene + ", and ";
   if (v.until < 1) line += "until t = " + decimal(v.until) + " of piece " + std::to_string(v.pieces - 1) + " ";
-  line += "none of " + std::to_string(v.checked) + " " + s.pairs;
+  line += s.covered + "none of " + std::to_string(v.checked) + " " + s.pairs;
   if (v.late > 0) line += " (" + std::to_string(v.late) + " of them ignored up to a time)";
   line += " " + s.meets + ".";
   if (v.contact) line += (v.near ? " WITHIN THEIR MARGIN: " : " CONTACT of ") + v.contact_text + ".";

@@ -16,6 +16,9 @@ std::string counted(std::size_t n, const std::string& one, const std::string& ma
 /// The statements of the world beside its numbers, one line each: whose bodies, which of them move with a link, which
 /// pairs are not checked, margins.
 std::vector<std::string> linesOf(const World& world);
+/// Which paths and poses a claim covers beside those stated, as words before "none of 3 pairs": "for every path within
+/// 0.3 deg of it, base 'foot' within 2 mm and 0.1 deg, ". Empty: no others.
+std::string coveredBy(const World& world);
 /// The statements of the motion: what is checked, margin, start and goal, pairs that are ignored up to a time.
 std::vector<std::string> linesOf(const World& world, const Motion& motion, const Verdict& verdict);
 /// Whether a verified claim leaves something out that files do not: it ends early, or the motion itself leaves out a
@@ -28,6 +31,7 @@ struct Subject {
   std::string scene = "without obstacles";
   std::string pairs = "pairs of bodies";
   std::string meets = "touches";
+  std::string covered;  // coveredBy()
 };
 /// "VERIFIED: the robot of 'arm.urdf' moves ..., and none of 3 pairs of bodies touches." or "NOT VERIFIED: ...".
 std::string lineOf(const Verdict& verdict, const Subject& subject = {});

@@ -24,12 +24,22 @@ struct Element {
   Mat products;
 };
 
+/// A place between bodies where tolerances let one side move against the other. A point moves there by at most `slide`
+/// + `chord` times its distance from an axis or a centre (tube.cpp).
+struct Give {
+  int element = -1;   // of the frame; the place is after it, or before all of them
+  bool axis = false;  // the distance is that from the axis `at` through 0, else from the point `at`
+  Vec at{};
+  Fix slide, chord;  // m, and twice the sine of half the angle
+};
+
 struct Frame {
   std::string name;
   int parent, depth;
   double numbers[12];  // as stated: rotation by rows, then translation
   Pose origin;         // with every rotation that the numbers may mean
   std::vector<Element> elements;
+  std::vector<Give> gives;  // in their order, from the parent on
 };
 
 enum class Role { link, carried, obstacle };
@@ -47,6 +57,19 @@ struct Body {
   int name_id, frame, geometry;
   double numbers[12];
   Pose pose;
+  std::vector<Give> gives;  // of its pose: none or one; in the geometry's coordinates
+};
+
+/// How far slides by variables that follow each other may lead together from where they are stated to lead.
+struct VectorTolerance {
+  int count;      // of the variables: 2 or 3
+  double length;  // m
+};
+
+/// How far a pose may be from where it is stated.
+struct PoseTolerance {
+  double length, angle;  // m, rad
+  double pivot[3];       // about which it turns
 };
 
 struct Unchecked {
@@ -69,7 +92,12 @@ struct World {
   std::map<int, double> margins;
   std::map<std::pair<int, int>, double> pair_margins;
   std::map<std::pair<int, int>, Unchecked> unchecked;  // by names, the lower number first
+  // Tolerances: of variables, of vectors and rotations by their first variable, of frames, of names of bodies.
+  std::map<int, double> variable_tolerances, rotation_tolerances;
+  std::map<int, VectorTolerance> vector_tolerances;
+  std::map<int, PoseTolerance> frame_tolerances, body_tolerances;
   // Derived:
+  bool gives = false;                          // a frame or body does
   std::vector<char> moves, turns;              // of each variable: whether an element uses it; a `rotate` begins there
   std::vector<std::vector<Partner>> partners;  // of each body, lower numbers only
   std::uint64_t not_checked[kReasons] = {};
@@ -95,6 +123,8 @@ struct Motion {
 
 /// Derives from a world the partners of each body, and the pairs that are not checked. @throws BadInput
 void derivePairs(World& world);
+/// Derives from a world's tolerances what frames and bodies give. @throws BadInput: one that has no meaning.
+void deriveGives(World& world);
 /// @throws BadInput, naming the line.
 World readWorld(std::string_view text);
 Motion readMotion(std::string_view text, const World& world);

@@ -193,4 +193,108 @@ std::array<Fix, 3> Geometry::reach(std::uint32_t i, std::uint32_t j, const Vec& 
   return most;
 }
 
+/// Branch and bound for the most of |W p + o|^2 over the items [i, j). All values are too large rather than too small.
+/// Products are less than 1 ulp too small each, and points within 2 ulp of those stated. So a coordinate of W p + o is
+/// off by less than 3 + 2 |w|_1 ulp, w its row of W: `slack` is no less. A node's coordinates have 6 ulp more, so that
+/// they are not below those computed for its items.
+struct Geometry::FarSearch {
+  const Geometry& g;
+  const std::uint32_t i, j;
+  const std::array<Fix, 9> W;
+  const std::array<Fix, 3> o;
+  std::array<Fix, 3> slack;
+  Budget& budget;
+  Fix best{0};
+
+  Fix squared(const Point& p, const Point& half, Fix more) const {
+    Fix sum;
+    for (std::size_t c = 0; c < 3; ++c) {
+      Fix x = abs(W[3 * c] * p[0] + W[3 * c + 1] * p[1] + W[3 * c + 2] * p[2] + o[c]) + slack[c] + more;
+      for (std::size_t k = 0; k < 3 && more > Fix{0}; ++k) x += mulUp(abs(W[3 * c + k]), half[k]);
+      sum += mulUp(x, x);
+    }
+    return sum;
+  }
+  Fix most(std::uint32_t item) const {
+    Fix far;
+    if (g.kind == mesh) {
+      for (std::size_t c = 0; c < 3; ++c)
+        far = std::max(far, squared(g.points[g.triangles[3 * static_cast<std::size_t>(item) + c]], {}, Fix{0}));
+      return far;
+    }
+    const Box& box = g.cells_[item];  // the distance is convex: a corner is farthest
+    for (unsigned c = 0; c < (g.kind == hull ? 1u : 8u); ++c)
+      far = std::max(far, squared({(c & 1 ? box.high : box.low)[0], (c & 2 ? box.high : box.low)[1],
+                                   (c & 4 ? box.high : box.low)[2]},
+                                  {}, Fix{0}));
+    return far;
+  }
+  Fix most(const Box& box) const {
+    Point middle, half;
+    for (std::size_t k = 0; k < 3; ++k) {
+      middle[k] = shifted(box.low[k] + box.high[k], 1);  // rounded down: the upper half is the longer one
+      half[k] = box.high[k] - middle[k];
+    }
+    return squared(middle, half, ulps(6));
+  }
+  void look(std::uint32_t at, Fix bound) {
+    const Node& node = g.nodes_[at];
+    if (bound <= best || node.to <= i || node.from >= j) return;
+    budget.spend(4);
+    if (node.right != 0) {
+      const Fix left = most(g.nodes_[at + 1].box), right = most(g.nodes_[node.right].box);
+      if (left > right) look(at + 1, left);  // the farther one first
+      look(node.right, right);
+      if (!(left > right)) look(at + 1, left);
+      return;
+    }
+    for (std::uint32_t k = std::max(i, node.from); k < std::min(j, node.to); ++k) {
+      budget.spend(g.kind == boxes || g.kind == box ? 12 : 5);
+      best = std::max(best, most(k));
+    }
+  }
+};
+
+// With the coefficients b_0, b_1, b_2 of W p + o: |sum B_i b_i| <= sum B_i |b_i|, and |b_i| is convex in p. Points
+// around a round shape's generator are at most its longest semi-axis farther from the axis or centre.
+std::array<Fix, 3> Geometry::distance(std::uint32_t i, std::uint32_t j, const Mat& W, const Vec& o,
+                                      Budget& budget) const {
+  if (rounds.empty() && nodes_.empty()) throw NotProven("a distance to a body without bounds");
+  // The remainder at a point p: sum of r |p_k| over all nine entries of W, and of those of o.
+  Fix rest = o[0].r + o[1].r + o[2].r;
+  for (std::size_t k = 0; k < 3; ++k) {
+    Fix far;
+    for (const Round& round : rounds)
+      if (k == 2) far = std::max(far, encloseUp(std::fabs(round.z)));
+    if (!nodes_.empty()) far = std::max(abs(nodes_[0].box.low[k]), abs(nodes_[0].box.high[k])) + ulps(2);
+    rest += mulUp(W[k].r + W[3 + k].r + W[6 + k].r, far);
+  }
+  std::array<Fix, 3> most;
+  for (std::size_t b = 0; b < 3; ++b) {
+    std::array<Fix, 9> w;
+    for (std::size_t k = 0; k < 9; ++k) w[k] = bernstein(W[k])[b];
+    FarSearch search{*this,
+                     pieces_ == 1 ? 0 : i,
+                     pieces_ == 1 && !nodes_.empty() ? nodes_[0].to : j,
+                     w,
+                     {bernstein(o[0])[b], bernstein(o[1])[b], bernstein(o[2])[b]},
+                     {},
+                     budget,
+                     {}};
+    for (std::size_t c = 0; c < 3; ++c)
+      search.slack[c] = ulps(6) + Fix{2 * ((abs(w[3 * c]) + abs(w[3 * c + 1]) + abs(w[3 * c + 2])).v >> 64) + 2};
+    for (const Round& round : rounds) {
+      budget.spend(20);
+      const Fix centre = sqrtUp(search.squared(Point{Fix{}, Fix{}, enclose(round.z).x}, {}, Fix{0}));
+      most[b] = std::max(most[b], centre + encloseUp(std::max({round.axes[0], round.axes[1], round.axes[2]})));
+    }
+    if (!nodes_.empty()) {
+      search.look(0, Fix{kMost});
+      most[b] = std::max(most[b], sqrtUp(search.best));
+    }
+    most[b] += rest;
+  }
+  return most;
+}
+
 }  // namespace verify

@@ -68,6 +68,11 @@ struct Geometry {
   /// @param length  an upper bound of |v| for all s, where v is a rotated direction.
   std::array<Fix, 3> reach(std::uint32_t i, std::uint32_t j, const Vec& v, const Tm& d, Fix length,
                            Budget& budget) const;
+  /// Upper bounds of |W p + o| over all points p of the pieces [i, j): of the three Bernstein coefficients, remainder
+  /// included.
+  /// @param W, o  W p + o is a point at distance |W p + o| from an axis or a centre, for all s: moving p by some
+  ///   length changes it by no more.
+  std::array<Fix, 3> distance(std::uint32_t i, std::uint32_t j, const Mat& W, const Vec& o, Budget& budget) const;
 
  private:
   struct Node {
@@ -76,6 +81,7 @@ struct Geometry {
     Box box;
   };
   struct Search;
+  struct FarSearch;
   std::uint32_t build(std::uint32_t i, std::uint32_t j);
   Box boxOf(std::uint32_t item) const;
 

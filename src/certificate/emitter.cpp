@@ -98,7 +98,7 @@ class Emitter {
   }
 
   /// A task's sets seen from a frame. Partners that stand still in it are `still`: their ends are the same at all
-  /// times.
+  /// times. With tolerances they stand in the world: body A strays from all of them alike.
   struct Sets {
     const ProofTask& task;
     int frame;
@@ -109,9 +109,21 @@ class Emitter {
     Sets sets{task, frame, exact, {}, {}};
     for (std::size_t p = task.first; p < task.last; ++p) {
       if (!counts(task, partners_[p])) continue;
-      (moving_.body(partners_[p]).frame == frame ? sets.still : sets.moving).push_back(partners_[p]);
+      const bool still = moving_.body(partners_[p]).frame == frame && (frame == 0 || !moving_.world().tolerant);
+      (still ? sets.still : sets.moving).push_back(partners_[p]);
     }
     return sets;
+  }
+  /// How far tolerances let the task's body stray from what stands still in the world.
+  double strayAt(const Sets& sets, double t) {
+    return sets.still.empty() ? 0 : moving_.stray(sets.task.body, sets.task.node, t);
+  }
+  /// The partner's margin, with what tolerances add at time t; `still`: but for strayAt().
+  double marginAt(const Sets& sets, int partner, bool still, double t) {
+    const std::int32_t node = sets.task.size() == 1 ? sets.task.partner_node : 0;
+    const double stray =
+        still ? moving_.ownStray(partner, node) : moving_.stray(sets.task.body, sets.task.node, partner, node, t);
+    return moving_.margin(sets.task.body, partner) + stray;
   }
   /// The greatest n.y + margin |n| over some partners at time t.
   double maxAlong(const Sets& sets, const std::vector<int>& partners, const Vector3d& n, double t) {
@@ -120,7 +132,8 @@ class Emitter {
     for (const int partner : partners) {
       const Pose& pose = moving_.pose(partner, sets.frame, t);
       const Vector3d far = farthestAt(moving_.geometry(partner), node, pose, n, sets.exact);
-      most = std::max(most, n.dot(far) + moving_.margin(sets.task.body, partner) * n.norm());
+      const double margin = marginAt(sets, partner, &partners == &sets.still, t);
+      most = std::max(most, n.dot(far) + margin * n.norm());
     }
     return most;
   }
@@ -154,7 +167,8 @@ class Emitter {
       const ProofTask& task = sets_.task;
       const Pose& pose = emitter_.moving_.pose(task.body, sets_.frame, t);
       const Vector3d near = farthestAt(emitter_.moving_.geometry(task.body), task.node, pose, -n_, sets_.exact);
-      return n_.dot(near) - std::max(still_, emitter_.maxAlong(sets_, sets_.moving, n_, t));
+      const double still = still_ + emitter_.strayAt(sets_, t) * n_.norm();
+      return n_.dot(near) - std::max(still, emitter_.maxAlong(sets_, sets_.moving, n_, t));
     }
     bool isOpen(double t) {
       last_ = gapAt(t);
@@ -194,7 +208,7 @@ class Emitter {
       const std::int32_t node = sets.task.size() == 1 ? sets.task.partner_node : 0;
       for (const int partner : partners) {
         const Pose& pose = emitter.moving_.pose(partner, sets.frame, t);
-        const double margin = emitter.moving_.margin(sets.task.body, partner);
+        const double margin = emitter.marginAt(sets, partner, &partners == &sets.still, t);
         const Vector3d x =
             farthestAt(emitter.moving_.geometry(partner), node, pose, -n, sets.exact) - n * (margin / n.norm());
         const double value = n.dot(x);
@@ -212,8 +226,9 @@ class Emitter {
         const ProofTask& task = sets.task;
         const Pose& pose = emitter.moving_.pose(task.body, sets.frame, t);
         const Vector3d own = farthestAt(emitter.moving_.geometry(task.body), task.node, pose, along, sets.exact);
-        double other = still;
-        Vector3d other_point = still_point;
+        const double stray = emitter.strayAt(sets, t);
+        double other = still - stray * along.norm();
+        Vector3d other_point = still_point - along * (stray / along.norm());
         takeLeast(sets.moving, along, t, other, other_point);
         const double value = other - along.dot(own);
         if (value >= least) continue;
@@ -310,10 +325,11 @@ class Emitter {
     const std::int32_t node = own ? task.partner_node : task.node;
     const double margin = moving_.margin(task.body, partners_[task.first]);
     const auto gapAt = [&](double t) {
+      const double stray = moving_.stray(task.body, task.node, partners_[task.first], task.partner_node, t);
       const Pose at = moving_.pose(wall, frame, t);
       const Vector3d n = at.R * normal;
       return n.dot(farthestAt(moving_.geometry(body), node, moving_.pose(body, frame, t), -n, true)) -
-             (offset + n.dot(at.c)) - margin;
+             (offset + n.dot(at.c)) - margin - stray;
     };
     const double bend = moving_.acceleration(body, frame, task.middle());
     const std::function<bool(double, double, double, double, int)> open = [&](double a, double gap_a, double b,

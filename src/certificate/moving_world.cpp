@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "numerics/baseline_isa.h"
 
@@ -75,10 +76,19 @@ MovingWorld::Moment& MovingWorld::moment(double t) {
   if (!is_new) return moment;
   std::vector<Pose>& poses = moment.frames;
   poses.resize(world_.frames.size());
+  moment.places.resize(world_.frames.size());
   for (std::size_t f = 1; f < poses.size(); ++f) {
     const Frame& frame = world_.frames[f];
     poses[f] = poses[static_cast<std::size_t>(frame.parent)] * origins_[f];
-    for (const Element& element : frame.elements) poses[f] = poses[f] * pose(element, t);
+    auto give = frame.gives.begin();
+    const auto notePlaces = [&](int element) {
+      for (; give != frame.gives.end() && give->element == element; ++give) moment.places[f].push_back(poses[f]);
+    };
+    notePlaces(-1);
+    for (std::size_t k = 0; k < frame.elements.size(); ++k) {
+      poses[f] = poses[f] * pose(frame.elements[k], t);
+      notePlaces(static_cast<int>(k));
+    }
   }
   return moment;
 }
@@ -129,6 +139,160 @@ double MovingWorld::acceleration(int body, int frame, double t) {
     deeper = f.parent;
   }
   return 2 * turning * speed + own;
+}
+
+std::vector<MovingWorld::Place> MovingWorld::placesBetween(int a, int b) const {
+  std::vector<Place> up, down;
+  const auto addOwn = [&](int i, std::vector<Place>& list) {
+    if (!body(i).gives.empty()) list.push_back({-1, 0, i});
+  };
+  addOwn(a, up);
+  addOwn(b, down);
+  int f = body(a).frame, g = body(b).frame;
+  while (f != g) {
+    int& deeper = f > g ? f : g;  // parents have lower numbers
+    const Frame& frame = world_.frames[static_cast<std::size_t>(deeper)];
+    for (std::size_t k = frame.gives.size(); k-- > 0;) (f > g ? up : down).push_back({deeper, static_cast<int>(k), -1});
+    deeper = frame.parent;
+  }
+  up.insert(up.end(), down.rbegin(), down.rend());
+  return up;
+}
+
+double MovingWorld::moveAt(const Place& place, int i, std::int32_t node, double t) {
+  const Give& give =
+      place.frame < 0
+          ? body(place.body).gives[0]
+          : world_.frames[static_cast<std::size_t>(place.frame)].gives[static_cast<std::size_t>(place.give)];
+  if (give.chord == 0) return give.slide;
+  if (geometry(i).unbounded) return std::numeric_limits<double>::infinity();
+  Moment& at = moment(t);
+  const auto [it, is_new] =
+      at.moves.try_emplace({i, node, place.frame < 0 ? -1 - place.body : place.frame, place.give});
+  if (!is_new) return it->second;
+  const auto inWorld = [&](int k) {
+    return at.frames[static_cast<std::size_t>(body(k).frame)] * in_frame_[static_cast<std::size_t>(k)];
+  };
+  const Pose there = place.frame < 0
+                         ? inWorld(place.body)
+                         : at.places[static_cast<std::size_t>(place.frame)][static_cast<std::size_t>(place.give)];
+  const Pose seen = inWorld(i).inverse() * there;
+  const Vector3d point = give.axis ? seen.c : Vector3d(seen.R * give.at + seen.c);
+  const Vector3d axis = give.axis ? Vector3d(seen.R * give.at) : Vector3d(Vector3d::Zero());
+  return it->second = give.slide + give.chord * largestDistance(geometry(i), node, point, axis);
+}
+
+double MovingWorld::stray(int a, std::int32_t node_a, int b, std::int32_t node_b, double t) {
+  if (!world_.tolerant) return 0;
+  const std::vector<Place> places = placesBetween(a, b);
+  // Seen from the k-th place on: A moves at those before it, B at the others.
+  double others = 0, least = std::numeric_limits<double>::infinity();
+  std::vector<double> of_b;
+  for (const Place& place : places) others += of_b.emplace_back(moveAt(place, b, node_b, t));
+  double own = 0;
+  for (std::size_t k = 0; k <= places.size(); ++k) {
+    double sum = own;  // summed anew: infinite ones can't be subtracted
+    for (std::size_t j = k; j < places.size(); ++j) sum += of_b[j];
+    least = std::min(least, sum);
+    if (k < places.size()) own += moveAt(places[k], a, node_a, t);
+  }
+  return least;
+}
+
+double MovingWorld::stray(int i, std::int32_t node, double t) {
+  if (!world_.tolerant) return 0;
+  double sum = ownStray(i, node);
+  for (int f = body(i).frame; f > 0; f = world_.frames[static_cast<std::size_t>(f)].parent) {
+    const std::size_t count = world_.frames[static_cast<std::size_t>(f)].gives.size();
+    for (std::size_t k = 0; k < count; ++k) sum += moveAt({f, static_cast<int>(k), -1}, i, node, t);
+  }
+  return sum;
+}
+
+double MovingWorld::ownStray(int i, std::int32_t node) {
+  return body(i).gives.empty() ? 0 : moveAt({-1, 0, i}, i, node, 0);
+}
+
+namespace {
+
+/// f(point, radius) of points that, with balls around them, hold the piece: for a distance, which is convex.
+template <class F>
+void forEachEnd(const engine::TreeView& tree, const engine::Piece& piece, const F& f) {
+  const double* const e = piece.size;
+  const Vector3d centre = Vector3d::Map(piece.center);
+  switch (piece.kind) {
+    case engine::PieceKind::vertices:
+      for (int i = 0; i < piece.num_vertices; ++i)
+        f(Vector3d::Map(baseline::VerticesKind::points(tree, piece) + 3 * i), piece.radius);
+      break;
+    case engine::PieceKind::hull:
+      for (int i = 0; i < piece.num_vertices; ++i) {
+        const Vec3 v = baseline::HullKind::vertex(tree, piece, i);
+        f(Vector3d(v[0], v[1], v[2]), piece.radius);
+      }
+      break;
+    case engine::PieceKind::box:
+      for (unsigned c = 0; c < 8; ++c)
+        f(Vector3d(centre + Vector3d(c & 1 ? e[0] : -e[0], c & 2 ? e[1] : -e[1], c & 4 ? e[2] : -e[2])), piece.radius);
+      break;
+    case engine::PieceKind::point:
+      f(centre, piece.radius);
+      break;
+    case engine::PieceKind::ellipsoid:
+      f(centre, std::max({e[0], e[1], e[2]}));
+      break;
+    case engine::PieceKind::segment:
+    case engine::PieceKind::cylinder:
+    case engine::PieceKind::cone:
+      for (const double z : {-e[2], e[2]}) {
+        const bool disc = piece.kind == engine::PieceKind::cylinder || (piece.kind == engine::PieceKind::cone && z < 0);
+        f(Vector3d(centre + Vector3d(0, 0, z)), piece.kind == engine::PieceKind::segment ? piece.radius
+                                                : disc                                   ? e[0]
+                                                                                         : 0);
+      }
+      break;
+    case engine::PieceKind::halfspace:
+    case engine::PieceKind::plane:
+      f(centre, std::numeric_limits<double>::infinity());
+      break;
+  }
+}
+
+}  // namespace
+
+double largestDistance(const Geometry& geometry, std::int32_t node, const Vector3d& point, const Vector3d& axis) {
+  const engine::TreeView& tree = geometry.shape->view();
+  const auto distance = [&](const Vector3d& x) {
+    const Vector3d d = x - point;
+    return (d - axis * axis.dot(d)).norm();
+  };
+  const auto upper = [&](const engine::Node& n) {
+    const Vector3d lo(n.lo[0], n.lo[1], n.lo[2]), hi(n.hi[0], n.hi[1], n.hi[2]);
+    return distance(0.5 * (lo + hi)) + 0.5 * (hi - lo).norm();
+  };
+  double most = 0;
+  struct Open {
+    std::int32_t node;
+    double upper;
+  };
+  Open stack[64];  // the tree is balanced
+  int open = 0;
+  stack[open++] = {node, std::numeric_limits<double>::infinity()};
+  while (open > 0) {
+    const Open next = stack[--open];
+    if (next.upper <= most) continue;
+    const engine::Node& n = tree.nodes[next.node];
+    if (n.isLeaf()) {
+      forEachEnd(tree, tree.pieces[n.piece()],
+                 [&](const Vector3d& x, double radius) { most = std::max(most, distance(x) + radius); });
+      continue;
+    }
+    Open left = {n.left(), upper(tree.nodes[n.left()])}, right = {n.right(), upper(tree.nodes[n.right()])};
+    if (left.upper > right.upper) std::swap(left, right);
+    stack[open++] = left;
+    stack[open++] = right;
+  }
+  return most;
 }
 
 Vector3d farthest(const Geometry& geometry, std::int32_t node, const Vector3d& u, bool exact) {

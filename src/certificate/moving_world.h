@@ -4,6 +4,7 @@
 // turn away. Nothing here is proven: the emitter uses it to choose the hints that it writes.
 #pragma once
 
+#include <array>
 #include <map>
 #include <vector>
 
@@ -49,6 +50,13 @@ class MovingWorld {
   const Pose& pose(int body, int frame, double t);
   /// Bound, by rule of thumb, on |x''| for the body's points x seen from the frame, around time t.
   double acceleration(int body, int frame, double t);
+  /// About the most that tolerances let the points below the two nodes move against each other at time t, seen from
+  /// where that is least (doc/TUBES.md).
+  double stray(int a, std::int32_t node_a, int b, std::int32_t node_b, double t);
+  /// The same of one body against a place that stands still in the world.
+  double stray(int body, std::int32_t node, double t);
+  /// How far a body strays by the tolerance of its own pose.
+  double ownStray(int body, std::int32_t node);
   double margin(int a, int b) const { return world_.marginOf(body(a), body(b), motion_.margin, motion_.added); }
 
  private:
@@ -62,10 +70,25 @@ class MovingWorld {
   struct Moment {
     std::vector<Pose> frames;                    ///< in the world
     std::map<std::pair<int, int>, Pose> bodies;  ///< seen from frames
+    std::vector<std::vector<Pose>> places;       ///< of each frame's gives, in the world
+    /// By body, node, place (a frame and the number of a give; -1 - body): the most that it moves the points there.
+    std::map<std::array<int, 4>, double> moves;
   };
+  /// A place where something gives: a frame's, or a body's own.
+  struct Place {
+    int frame, give, body;  ///< frame -1: the body's
+  };
+  std::vector<Place> placesBetween(int a, int b) const;
+  double moveAt(const Place& place, int body, std::int32_t node, double t);
   Moment& moment(double t);
   std::map<double, Moment> moments_;
 };
+
+/// The largest distance of the pieces below a node from the axis through a point, or, without an axis, from the point;
+/// of round shapes a little more.
+/// @param axis  unit vector, or 0.
+double largestDistance(const Geometry& geometry, std::int32_t node, const Eigen::Vector3d& point,
+                       const Eigen::Vector3d& axis);
 
 /// A point of the pieces below a node that is farthest along u, not far from it where `exact` is false.
 /// @param u  in the geometry's frame, any length but 0.

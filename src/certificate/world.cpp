@@ -82,6 +82,82 @@ Frame frameOf(const KinematicTree& tree, LinkId link, const std::vector<int>& fr
   return frame;
 }
 
+double chordOf(double angle) {
+  return 2 * std::sin(std::min(angle, 3.14159265358979323846) / 2);
+}
+
+std::string toleranceText(const WorldTolerances::OfPose& t) {
+  return " " + numberText(t.length) + " " + numberText(t.angle) + " " + vectorText(t.pivot) + "\n";
+}
+Give giveOf(const WorldTolerances::OfPose& t) {
+  Give give;
+  give.at = t.pivot;
+  give.slide = t.length;
+  give.chord = chordOf(t.angle);
+  return give;
+}
+
+/// The lines of a joint's tolerance: of its variables, or of what several of them make up.
+std::string toleranceText(const KinematicTree& tree, JointId j, const WorldTolerances::OfJoint& t) {
+  const int v = tree.jointVariable(j), slides = tree.joint(j).type == JointType::planar ? 2 : 3;
+  std::string text;
+  const auto line = [&](const char* what, int variable, double value) {
+    if (value > 0)
+      text += "tolerance " + std::string(what) + " " + std::to_string(variable) + " " + numberText(value) + "\n";
+  };
+  const auto vector = [&] {
+    if (t.length > 0)
+      text +=
+          "tolerance vector " + std::to_string(v) + " " + std::to_string(slides) + " " + numberText(t.length) + "\n";
+  };
+  switch (tree.joint(j).type) {
+    case JointType::fixed:
+      break;
+    case JointType::revolute:
+    case JointType::continuous:
+      line("variable", v, t.angle);
+      break;
+    case JointType::prismatic:
+      line("variable", v, t.length);
+      break;
+    case JointType::planar:
+      vector();
+      line("variable", v + 2, t.angle);
+      break;
+    case JointType::spherical:
+      line("rotation", v, t.angle);
+      break;
+    case JointType::floating:
+      vector();
+      line("rotation", v + 3, t.angle);
+      break;
+  }
+  return text;
+}
+
+/// The gives of a joint's elements. @param t  of the joint, or of the one that it mimics.
+std::vector<Give> givesOf(const std::vector<Element>& elements, const WorldTolerances::OfJoint& t) {
+  std::vector<Give> gives;
+  bool slid = false;
+  for (std::size_t k = 0; k < elements.size(); ++k) {
+    const Element& e = elements[k];
+    Give give;
+    give.element = static_cast<int>(k);
+    give.axis = e.kind == Element::Kind::turn;
+    if (give.axis) give.at = e.axis;
+    const double factor = std::abs(e.multiplier);
+    // A joint that mimics one of another kind takes its number.
+    if (e.kind != Element::Kind::slide) {
+      give.chord = chordOf(factor * std::max(t.angle, elements.size() == 1 ? t.length : 0));
+    } else if (!slid) {  // the slides of a joint are one vector
+      give.slide = factor * std::max(t.length, elements.size() == 1 ? t.angle : 0);
+      slid = true;
+    }
+    if (give.slide > 0 || give.chord > 0) gives.push_back(give);
+  }
+  return gives;
+}
+
 /// Adds the frames of a body with a motion of its own, and their variables with what these do.
 /// @return the last one.
 int addFrames(const std::string& name, const BodyMotion& motion, World& world) {
@@ -265,7 +341,12 @@ class Builder {
     const auto [it, is_new] = geometry_of_.try_emplace(shape.get(), static_cast<int>(world.geometries.size()));
     if (is_new) world.geometries.emplace_back(std::move(shape));
     world.bodies.push_back(
-        {role, name, frame, it->second, pose, static_cast<std::int32_t>(number), world.margins.ofBody(name), {}});
+        {role, name, frame, it->second, pose, static_cast<std::int32_t>(number), world.margins.ofBody(name), {}, {}});
+  }
+  /// Tolerances of objects, and lines of others.
+  void tolerate(const WorldTolerances& tolerances, const std::string& lines) {
+    of_object_ = tolerances.of_object;
+    tolerance_lines_ += lines;
   }
   void exclude(const char* reason, const std::string& a, const std::string& b) {
     unchecked_.insert({reason, std::min(a, b), std::max(a, b)});
@@ -276,6 +357,8 @@ class Builder {
 
  private:
   std::map<const ShapeTree*, int> geometry_of_;
+  std::map<std::string, WorldTolerances::OfPose> of_object_;
+  std::string tolerance_lines_;
   std::set<std::array<std::string, 3>> unchecked_;
 };
 
@@ -321,6 +404,16 @@ void Builder::write() {
     if (!names.count(pair.first) || !names.count(pair.second)) continue;
     text += "margin " + word(pair.first) + " " + word(pair.second) + " " + numberText(margin) + "\n";
   }
+  text += tolerance_lines_;
+  for (const auto& [name, tolerance] : of_object_) {
+    if (tolerance.any() && names.count(name)) text += "tolerance body " + word(name) + toleranceText(tolerance);
+  }
+  for (Body& body : world.bodies) {
+    const auto own = of_object_.find(body.name);
+    if (own != of_object_.end() && own->second.any()) body.gives.push_back(giveOf(own->second));
+    world.tolerant = world.tolerant || !body.gives.empty();
+  }
+  for (const Frame& frame : world.frames) world.tolerant = world.tolerant || !frame.gives.empty();
   for (const auto& [reason, a, b] : unchecked_) text += "unchecked " + reason + " " + word(a) + " " + word(b) + "\n";
   world.hash = sha256Text(text);
   world.text = std::make_shared<const std::string>(std::move(text));
@@ -329,7 +422,8 @@ void Builder::write() {
 /// The world of a manager.
 class ManagedWorld {
  public:
-  explicit ManagedWorld(const Registry& registry) : registry_(registry), tree_(*registry.tree()) {}
+  ManagedWorld(const Registry& registry, const WorldTolerances& tolerances)
+      : registry_(registry), tolerances_(tolerances), tree_(*registry.tree()) {}
 
   World run() {
     world_.margins = registry_.margins();
@@ -337,6 +431,7 @@ class ManagedWorld {
     addObstacles();
     addLinks();
     addPairs();
+    addTolerances();
     builder_.write();
     return std::move(world_);
   }
@@ -347,9 +442,19 @@ class ManagedWorld {
     world_.first_moving = tree_.dof();
     world_.frames.emplace_back();
     frame_of_link_.assign(static_cast<std::size_t>(tree_.numLinks()), 0);
-    for (const LinkId link : tree_.topologicalOrder()) {
+    const std::vector<LinkId>& links = tree_.topologicalOrder();
+    const auto isRoot = [&](LinkId link) { return tree_.parentJoint(link) < 0; };
+    int ground = 0;  // of roots
+    // Several roots are off together: in a frame of their own.
+    if (tolerances_.of_base.any() && std::count_if(links.begin(), links.end(), isRoot) > 1) {
+      ground = static_cast<int>(world_.frames.size());
+      world_.frames.emplace_back();
+      world_.frames.back().name = "/base";
+    }
+    for (const LinkId link : links) {
       frame_of_link_[static_cast<std::size_t>(link)] = static_cast<int>(world_.frames.size());
       world_.frames.push_back(frameOf(tree_, link, frame_of_link_));
+      if (isRoot(link)) world_.frames.back().parent = ground;
     }
     for (JointId j = 0; j < tree_.numJoints(); ++j) {
       if (tree_.quaternionVariable(j) >= 0) world_.orientations.push_back(tree_.quaternionVariable(j));
@@ -419,6 +524,27 @@ class ManagedWorld {
     return pair && pair->finding.leftOut();
   }
 
+  void addTolerances() {
+    std::string lines;
+    for (JointId j = 0; j < tree_.numJoints() && !tolerances_.of_joint.empty(); ++j) {
+      if (!tree_.joint(j).mimics) lines += toleranceText(tree_, j, tolerances_.of_joint[static_cast<std::size_t>(j)]);
+    }
+    for (const LinkId link : tree_.topologicalOrder()) {
+      JointId j = tree_.parentJoint(link);
+      if (j < 0 || tolerances_.of_joint.empty()) continue;
+      Frame& frame = world_.frames[static_cast<std::size_t>(frame_of_link_[static_cast<std::size_t>(link)])];
+      while (tree_.joint(j).mimics) j = tree_.jointId(tree_.joint(j).mimic.master);
+      frame.gives = givesOf(frame.elements, tolerances_.of_joint[static_cast<std::size_t>(j)]);
+    }
+    const auto isOfRobot = [](const Body& body) { return body.role != Body::Role::obstacle; };
+    if (tolerances_.of_base.any() && std::any_of(world_.bodies.begin(), world_.bodies.end(), isOfRobot)) {
+      lines += "tolerance frame 1" + toleranceText(tolerances_.of_base);  // the root, or the frame of several
+      std::vector<Give>& gives = world_.frames[1].gives;
+      gives.insert(gives.begin(), giveOf(tolerances_.of_base));
+    }
+    builder_.tolerate(tolerances_, lines);
+  }
+
   void addPairs() {
     for (std::size_t i = 0; i < managed_.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
@@ -433,6 +559,7 @@ class ManagedWorld {
   }
 
   const Registry& registry_;
+  const WorldTolerances& tolerances_;
   const KinematicTree& tree_;
   Builder builder_;
   World& world_ = builder_.world;
@@ -465,12 +592,12 @@ double World::marginOf(const Body& a, const Body& b, double margin, double added
   return (own >= 0 ? own : margin) + added;
 }
 
-World makeWorld(const Registry& registry) {
-  return ManagedWorld(registry).run();
+World makeWorld(const Registry& registry, const WorldTolerances& tolerances) {
+  return ManagedWorld(registry, tolerances).run();
 }
 
-World makeWorld(const ShapeTree& shape1, const BodyMotion& motion1, const ShapeTree& shape2,
-                const BodyMotion& motion2) {
+World makeWorld(const ShapeTree& shape1, const BodyMotion& motion1, const ShapeTree& shape2, const BodyMotion& motion2,
+                const WorldTolerances& tolerances) {
   Builder builder;
   World& world = builder.world;
   world.frames.emplace_back();
@@ -481,6 +608,7 @@ World makeWorld(const ShapeTree& shape1, const BodyMotion& motion1, const ShapeT
   add("body1", shape1, motion1, 0);
   add("body2", shape2, motion2, 1);
   world.bodies[1].partners = {0};
+  builder.tolerate(tolerances, "");
   builder.write();
   return std::move(world);
 }

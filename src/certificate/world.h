@@ -12,6 +12,7 @@
 
 #include <Eigen/Geometry>
 
+#include "certificate/tolerances.h"
 #include "geometry/shape_tree.h"
 #include "setup/registry.h"
 
@@ -30,12 +31,22 @@ struct Element {
   double multiplier = 1, offset = 0;
 };
 
+/// A place where tolerances let one side move against the other: its points by at most `slide` + `chord` times their
+/// distance from an axis, or from a point.
+struct Give {
+  int element = -1;  ///< of the frame; the place is after it, or before all of them
+  bool axis = false;
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< the axis through the origin, or the point
+  double slide = 0, chord = 0;                   ///< m; 2 sin(angle / 2)
+};
+
 /// pose = pose of the parent * origin * elements. Frame 0 is the world; parents come before their children.
 struct Frame {
   std::string name;
   int parent = 0;
   Eigen::Isometry3d origin = Eigen::Isometry3d::Identity();
   std::vector<Element> elements;
+  std::vector<Give> gives;  ///< in their order
 };
 
 /// A geometry's pieces in the order of its tree, so that what is below a node is an interval of them.
@@ -60,6 +71,7 @@ struct Body {
   Eigen::Isometry3d pose;     ///< in the frame
   std::int32_t number;        ///< as the registry counts bodies
   double own_margin = -1;     ///< of its name, m; -1: none
+  std::vector<Give> gives;    ///< of its pose, in the geometry's frame: none or one
   std::vector<int> partners;  ///< bodies of lower number that make a checked pair with it, ascending
 };
 
@@ -70,6 +82,7 @@ struct World {
   std::vector<Body> bodies;  ///< obstacles that stand still first, unbounded ones before the others; then those that
                              ///< move; then what links carry
   NamedMargins margins;
+  bool tolerant = false;  ///< a frame or a body gives
   /// Polynomials of moving obstacles' variables over t in [0, 1], column k for t^k: rows for variables from
   /// `first_moving` on.
   Eigen::MatrixXd moving;
@@ -86,9 +99,10 @@ struct World {
 };
 
 /// @param registry  what is set up.
-World makeWorld(const Registry& registry);
-/// Two bodies, each with a motion of its own. The shapes must outlive the world.
-World makeWorld(const ShapeTree& shape1, const BodyMotion& motion1, const ShapeTree& shape2, const BodyMotion& motion2);
+World makeWorld(const Registry& registry, const WorldTolerances& tolerances = {});
+/// Two bodies, "body1" and "body2", each with a motion of its own. The shapes must outlive the world.
+World makeWorld(const ShapeTree& shape1, const BodyMotion& motion1, const ShapeTree& shape2, const BodyMotion& motion2,
+                const WorldTolerances& tolerances = {});
 
 /// A number as statements have it: C's hexadecimal floating-point constant.
 std::string numberText(double x);

@@ -83,8 +83,8 @@ TEST(VerifyReport, AVerdictIsASentenceOfItsSubject) {
   v.pieces = 3;
   v.not_checked[static_cast<int>(Reason::neighbours)] = 5;
   v.not_checked[static_cast<int>(Reason::allowed)] = 7;
-  const Subject subject{"the robot of 'arm.urdf'", "as 'plan.csv' says", "among the obstacles of 'cell.stl'",
-                        "pairs of bodies", "comes within its margin"};
+  const Subject subject{"the robot of 'arm.urdf'", "as 'plan.csv' says",      "among the obstacles of 'cell.stl'",
+                        "pairs of bodies",         "comes within its margin", ""};
   EXPECT_EQ(lineOf(v, subject),
             "VERIFIED: the robot of 'arm.urdf' moves as 'plan.csv' says among the obstacles of 'cell.stl', and until t "
             "= 0.5 of piece 2 none of 66 pairs of bodies comes within its margin.");

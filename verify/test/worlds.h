@@ -370,6 +370,8 @@ class Prover {
   /// Whether every node that was written is right at its samples.
   bool complete = true;
   int most_time_depth = 6;
+  /// By how much a pair's margin grows.
+  std::function<double(int, int)> more = [](int, int) { return 0.0; };
 
   std::string roots() {
     std::string s;
@@ -398,6 +400,7 @@ class Prover {
     return world_.geometries[static_cast<std::size_t>(world_.bodies[static_cast<std::size_t>(body)].geometry)];
   }
   int partner(std::uint32_t k) const { return partners_[k].body; }
+  double marginOf(std::uint32_t k) const { return toDouble(partners_[k].margin) + more(a_, partner(k)); }
   void choose(Task& t) const {
     if (t.q - t.p == 1) t.k = 0, t.l = geometry(partner(t.p)).pieces();
   }
@@ -419,7 +422,7 @@ class Prover {
         const auto lowest = [&](const V& m_) {
           return dot(m_, O * farthest(geometry(other), 0, geometry(other).pieces(), turnBack(O, -1 * m_)) - W.t);
         };
-        const double margin = toDouble(partners_[t.p].margin) * norm(n);
+        const double margin = marginOf(t.p) * norm(n);
         front = front && lowest(n) > s[3] + margin;
         back = back && lowest(-1 * n) > -s[3] + margin;
       }
@@ -483,7 +486,7 @@ class Prover {
     }
     const bool single = t.q - t.p == 1;
     double margin = 0;
-    for (std::uint32_t k = t.p; k < t.q; ++k) margin = std::max(margin, toDouble(partners_[k].margin));
+    for (std::uint32_t k = t.p; k < t.q; ++k) margin = std::max(margin, marginOf(k));
     const auto least = [&](const V& d) {
       V best{};
       double value = 1e300;
