@@ -25,7 +25,7 @@ void addPairs(bool touching, Batch& batch) {
   for (; batch.num_groups < kSelfTestPairs; ++batch.num_groups) {
     const std::int32_t first = 9 * batch.num_groups, window = batch.num_groups;
     const double radius = uniform(1e-4, 0.1);
-    double corner[3], turn[3], length = 0;
+    double corner[3] = {}, turn[3], length = 0;
     for (double& x : turn) {
       x = uniform(-1, 1);
       length += std::abs(x);
