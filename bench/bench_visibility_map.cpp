@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where stage 2, culling by visibility, pays: a map over kinds and sizes of scenes, lengths of motions, numbers of
-// links, executors, and batches. Each cell is the time of a set of queries with the stage beside that without it.
+// Where stage 2, culling by visibility, pays: a map over kinds of scenes, lengths of motions, numbers of links, and
+// executors. Each cell is the time of a set of queries with the stage beside that without it.
 //
 // Scenes, all about an arm of meshes (1,000 triangles a link) with a reach of 0.95 m:
 //   room     a bumpy closed surface around the arm, near enough to touch, as a scan of a cell is: one mesh
-//   bushes   150 balls of random small triangles within reach, as clutter or a point cloud with triangles for points:
-//            one mesh, or each an object
+//   bushes   150 balls of random small triangles within reach, as clutter: one mesh, or each an object
+//   cloud    the corners of the bushes' triangles, as a point cloud
 //   moving   the room, or the bushes in one mesh, carried past the arm: an obstacle that moves
 //   cabin    the room as the link that carries the arm, an arm in its vehicle: links are checked against each other
 //   only itself   nothing but the arm: likewise
@@ -17,9 +17,7 @@
 #include <ctime>
 #include <functional>
 #include <iostream>
-#include <map>
 #include <memory>
-#include <optional>
 
 #include <fcl/math/motion/interp_motion.h>
 #include <fcl/narrowphase/continuous_collision_object.h>
@@ -27,6 +25,7 @@
 
 #include "arm_scene.h"
 #include "fcl_artic/manager.h"
+#include "fcl_artic/point_cloud.h"
 #include "options.h"
 #ifdef FCL_ARTIC_HAS_OFFSCREEN
 #include "fcl_artic/visibility/offscreen.h"
@@ -40,8 +39,6 @@ namespace {
 constexpr double kReach = 0.95;
 /// A block of queries takes at least this, us: they are asked again and again.
 constexpr double kLeastBlock = 4000;
-/// Time that `automatic` is given to learn, us.
-constexpr double kLearning = 4e5;
 
 /// Of this thread, us: other programs on the machine do not count. (main() has OpenGL draw in it.)
 double processorTime() {
@@ -86,7 +83,7 @@ std::vector<TriangleMesh> makeBushes(int triangles) {
 }
 
 /// What the meshes of a scene are. Where they are no obstacles, links are checked against each other, and only so.
-enum class Role { obstacles, movingObstacles, link };
+enum class Role { obstacles, cloud, movingObstacles, link };
 /// A kind of scene; its meshes for a number of triangles.
 struct Kind {
   std::string name;
@@ -99,6 +96,7 @@ std::vector<Kind> kinds() {
   return {{"room", room},
           {"bushes, one mesh", bushes},
           {"bushes", makeBushes},
+          {"cloud", bushes, Role::cloud},
           {"moving room", room, Role::movingObstacles},
           {"moving bushes", bushes, Role::movingObstacles},
           {"cabin", room, Role::link},
@@ -130,7 +128,12 @@ class Place {
         manager_.registerObject(moving_.back().get());
         continue;
       }
-      objects_.push_back(std::make_unique<fcl::CollisionObjectd>(toBvh<fcl::OBBRSSd>(mesh)));
+      std::shared_ptr<fcl::CollisionGeometryd> geometry = toBvh<fcl::OBBRSSd>(mesh);
+      if (role == Role::cloud) {
+        geometry = std::make_shared<PointCloud>(
+            std::vector<Eigen::Vector3d>(mesh.vertices.begin(), mesh.vertices.end()), 0.002);
+      }
+      objects_.push_back(std::make_unique<fcl::CollisionObjectd>(geometry));
       if (role == Role::link) {
         manager_.bind(arm_.tree->linkName(0), objects_.back().get());
       } else {
@@ -188,27 +191,6 @@ class Place {
   std::size_t triangles_ = 0;
 };
 
-/// How the queries are asked.
-struct Way {
-  std::string executor;
-  VisibilityMode mode;
-  std::size_t batch;  ///< motions at a time; 1: one query after the other
-};
-
-std::string nameOf(VisibilityMode mode) {
-  switch (mode) {
-    case VisibilityMode::off:
-      return "off";
-    case VisibilityMode::on:
-      return "on";
-    case VisibilityMode::automatic:
-      return "automatic";
-    case VisibilityMode::atOnce:
-      return "at once";
-  }
-  return {};
-}
-
 /// One cell of the map.
 struct Cell {
   std::string scene;
@@ -216,7 +198,7 @@ struct Cell {
   int links;
   double degrees;
   std::string set;  ///< "free", "contact" or "any"
-  Way way;
+  std::string executor;
   std::size_t queries;
   double off_us, us, ratio;  ///< a query; the ratio is the median of those of blocks taken in turns
   double culled;             ///< of the pairs that the stage saw
@@ -225,38 +207,24 @@ struct Cell {
 
 class Asker {
  public:
-  Asker(Place& place, const std::vector<JointMotion>& motions, ContactMode mode) : place_(place), motions_(motions) {
+  Asker(Place& place, const std::vector<JointMotion>& motions, VisibilityMode mode) : place_(place), motions_(motions) {
     request_.check_self = place.itself();
-    request_.mode = mode;
+    request_.visibility = mode;
     request_.tolerance_time = 0x1p-13;
+    results_.resize(motions.size());
   }
   /// Mean time of all queries together, us.
-  double askForAWhile(const Way& way) {
+  double ask() {
+    const double begin = processorTime();
     double sum = 0;
     int n = 0;
-    for (; sum < kLeastBlock; ++n) sum += ask(way);
-    return sum / n;
-  }
-  /// Time of all queries, us.
-  double ask(const Way& way) {
-    request_.visibility = way.mode;
-    results_.resize(motions_.size());
-    const double begin = processorTime();
-    if (way.batch <= 1) {
+    for (; sum < kLeastBlock; ++n) {
       for (std::size_t i = 0; i < motions_.size(); ++i) {
         place_.manager().continuousCollide(motions_[i], request_, results_[i]);
       }
-    } else {
-      std::vector<CertifiedResult> some;
-      for (std::size_t i = 0; i < motions_.size(); i += way.batch) {
-        const std::vector<JointMotion> part(
-            motions_.begin() + static_cast<std::ptrdiff_t>(i),
-            motions_.begin() + static_cast<std::ptrdiff_t>(std::min(motions_.size(), i + way.batch)));
-        place_.manager().continuousCollide(part, request_, some, 1);
-        std::copy(some.begin(), some.end(), results_.begin() + static_cast<std::ptrdiff_t>(i));
-      }
+      sum = processorTime() - begin;
     }
-    return processorTime() - begin;
+    return sum / n;
   }
   const std::vector<CertifiedResult>& results() const { return results_; }
 
@@ -267,26 +235,42 @@ class Asker {
   std::vector<CertifiedResult> results_;
 };
 
-double median(std::vector<double> all) {
-  std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
-  return all[all.size() / 2];
-}
-
-std::string csvOf(const std::vector<Cell>& cells) {
-  std::string csv = "scene,triangles,links,degrees,set,executor,mode,batch,queries,off_us,with_us,ratio,culled,drawn\n";
-  for (const Cell& c : cells) {
-    csv += fmt::format("\"{}\",{},{},{:g},{},{},{},{},{},{:.2f},{:.2f},{:.3f},{:.3f},{:.0f}\n", c.scene, c.triangles,
-                       c.links, c.degrees, c.set, c.way.executor, nameOf(c.way.mode), c.way.batch, c.queries, c.off_us,
-                       c.us, c.ratio, c.culled, c.drawn);
+/// @return the number of verdicts that differ.
+std::size_t measure(Place& place, const std::vector<JointMotion>& motions, int blocks, Cell& cell) {
+  Asker without(place, motions, VisibilityMode::off), with(place, motions, VisibilityMode::on);
+  std::vector<double> ratios;
+  double off_us = HUGE_VAL, us = HUGE_VAL;
+  for (int i = 0; i < blocks; ++i) {
+    const double a = without.ask(), b = with.ask();
+    ratios.push_back(b / a);
+    off_us = std::min(off_us, a);
+    us = std::min(us, b);
   }
-  return csv;
+  std::sort(ratios.begin(), ratios.end());
+  double pairs = 0, culled = 0, pieces = 0;
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    const VisibilityStatistics& s = with.results()[i].statistics.visibility;
+    pairs += static_cast<double>(s.pairs);
+    culled += static_cast<double>(s.culled);
+    pieces += static_cast<double>(s.pieces);
+    differ += with.results()[i].status != without.results()[i].status;
+  }
+  const auto n = static_cast<double>(motions.size());
+  cell.queries = motions.size();
+  cell.off_us = off_us / n;
+  cell.us = us / n;
+  cell.ratio = ratios[ratios.size() / 2];
+  cell.culled = pairs > 0 ? culled / pairs : 0;
+  cell.drawn = pieces / n;
+  return differ;
 }
 
-std::shared_ptr<const VisibilityCuller> cullerOf(const std::string& executor, const VisibilityOptions& options) {
-  if (executor == "cpu") return std::make_shared<const VisibilityCuller>(options);
+std::shared_ptr<const VisibilityCuller> cullerOf(const std::string& executor) {
+  if (executor == "cpu") return std::make_shared<const VisibilityCuller>();
 #ifdef FCL_ARTIC_HAS_OFFSCREEN
-  if (executor == "osmesa") return makeOffscreenCuller(OffscreenBackend::osmesa, options);
-  if (executor == "egl") return makeOffscreenCuller(OffscreenBackend::egl, options);
+  if (executor == "osmesa") return makeOffscreenCuller(OffscreenBackend::osmesa);
+  if (executor == "egl") return makeOffscreenCuller(OffscreenBackend::egl);
 #endif
   throw std::runtime_error("no executor '" + executor + "'");
 }
@@ -298,42 +282,38 @@ int main(int argc, char** argv) {
   CLI::App app("Where culling by visibility pays: a map");
   std::size_t count = 60;
   int blocks = 5;
-  std::vector<int> sizes = {100000, 1000000}, links = {6, 20};
+  std::vector<int> sizes = {100000}, links = {6, 20};
   std::vector<double> steps = {5, 20, 60, 180};
-  std::vector<std::size_t> batches = {1, 16, 256, 4096};
   std::vector<std::string> executors = {"cpu", "osmesa"}, scenes;
   for (const Kind& kind : kinds()) scenes.push_back(kind.name);
-  std::vector<std::string> modes = {"on", "at once", "automatic"};
-  std::string name = "bench_visibility_map";
-  bool any = false;
-  VisibilityOptions options;
   app.add_option("--queries", count, "motions of each set")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--blocks", blocks, "times that each way is asked, in turns with `off`")
+  app.add_option("--blocks", blocks, "times that each executor is asked, in turns with `off`")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--triangles", sizes, "of a scene")->capture_default_str();
   app.add_option("--links", links, "of the arm")->capture_default_str();
   app.add_option("--steps", steps, "degrees that a joint turns by at most")->capture_default_str();
-  app.add_option("--batches", batches, "motions at a time; more than --queries repeat these")->capture_default_str();
   app.add_option("--executors", executors, "cpu, osmesa, egl")->capture_default_str();
   app.add_option("--scenes", scenes, "kinds of scenes")->capture_default_str();
-  app.add_option("--modes", modes, "ways of the stage")->capture_default_str();
-  app.add_option("--name", name, "of the files of results")->capture_default_str();
-  app.add_flag("--every-link-pair", options.every_link_pair,
-               "look at pairs of two links that the default leaves alone");
-  app.add_flag("--any", any, "ask for any contact, as planners do, not for the first");
   if (const auto status = readOptions(app, report, argc, argv)) return *status;
   setenv("LP_NUM_THREADS", "0", 1);  // llvmpipe draws in the thread that asks
 
-  std::map<std::string, std::shared_ptr<const VisibilityCuller>> cullers;
-  for (const std::string& executor : executors) {
-    cullers[executor] = cullerOf(executor, options);
-    if (cullers[executor]->executor() != executor) throw std::runtime_error(cullers[executor]->fallbackReason());
-  }
-  std::vector<Cell> cells;
+  std::string csv = "scene,triangles,links,degrees,set,executor,queries,off_us,with_us,ratio,culled,drawn\n";
   std::size_t differ = 0;
-  fmt::print("{:<18} {:>8} {:>5} {:>4} {:<8} {:<9} {:<9} {:>5} {:>9} {:>9} {:>7} {:>7} {:>8}\n", "scene", "triangles",
-             "links", "deg", "set", "executor", "mode", "batch", "off us", "with us", "ratio", "culled", "drawn");
+  fmt::print("{:<18} {:>8} {:>5} {:>4} {:<8} {:<9} {:>9} {:>9} {:>7} {:>7} {:>8}\n", "scene", "triangles", "links",
+             "deg", "set", "executor", "off us", "with us", "ratio", "culled", "drawn");
+  const auto addCell = [&](const Cell& c) {
+    csv += fmt::format("\"{}\",{},{},{:g},{},{},{},{:.2f},{:.2f},{:.3f},{:.3f},{:.0f}\n", c.scene, c.triangles, c.links,
+                       c.degrees, c.set, c.executor, c.queries, c.off_us, c.us, c.ratio, c.culled, c.drawn);
+    fmt::print("{:<18} {:>8} {:>5} {:>4g} {:<8} {:<9} {:>9.1f} {:>9.1f} {:>7.2f} {:>6.1f}% {:>8.0f}\n", c.scene,
+               c.triangles, c.links, c.degrees, c.set, c.executor, c.off_us, c.us, c.ratio, 100 * c.culled, c.drawn);
+    std::cout.flush();
+  };
+  std::vector<std::shared_ptr<const VisibilityCuller>> cullers;
+  for (const std::string& executor : executors) {
+    cullers.push_back(cullerOf(executor));
+    if (cullers.back()->executor() != executor) throw std::runtime_error(cullers.back()->fallbackReason());
+  }
   for (const Kind& kind : kinds()) {
     if (std::find(scenes.begin(), scenes.end(), kind.name) == scenes.end()) continue;
     for (const int size : sizes) {
@@ -344,56 +324,18 @@ int main(int argc, char** argv) {
           for (const std::string set : {"free", "contact", "any"}) {
             const std::vector<JointMotion> motions = place.motions(degrees * kPi / 180, set, count);
             if (motions.size() < 8) continue;
-            for (const std::size_t batch : batches) {
-              std::vector<JointMotion> asked = motions;
-              while (asked.size() < batch) asked.push_back(motions[asked.size() % motions.size()]);
-              Asker with(place, asked, any ? ContactMode::any : ContactMode::first), without = with;
-              for (const std::string& executor : executors) {
-                place.manager().setVisibility(cullers[executor]);
-                for (const VisibilityMode mode :
-                     {VisibilityMode::on, VisibilityMode::atOnce, VisibilityMode::automatic}) {
-                  if (std::find(modes.begin(), modes.end(), nameOf(mode)) == modes.end()) continue;
-                  if (mode == VisibilityMode::on && set == "contact") continue;  // two solves: it can't pay
-                  const Way way{executor, mode, batch}, off{"", VisibilityMode::off, batch};
-                  std::vector<double> ratios;
-                  double off_us = HUGE_VAL, us = HUGE_VAL;
-                  const int turns = batch > 256 ? 1 : blocks;
-                  if (mode == VisibilityMode::automatic) {  // until it knows
-                    for (double spent_us = 0; spent_us < kLearning;) spent_us += with.ask(way);
-                  }
-                  for (int i = 0; i < turns; ++i) {
-                    const double a = without.askForAWhile(off), b = with.askForAWhile(way);
-                    ratios.push_back(b / a);
-                    off_us = std::min(off_us, a);
-                    us = std::min(us, b);
-                  }
-                  const auto number = static_cast<double>(asked.size());
-                  double pairs = 0, culled = 0, pieces = 0;
-                  for (std::size_t i = 0; i < asked.size(); ++i) {
-                    const VisibilityStatistics& s = with.results()[i].statistics.visibility;
-                    pairs += static_cast<double>(s.pairs);
-                    culled += static_cast<double>(s.culled);
-                    pieces += static_cast<double>(s.pieces);
-                    differ += with.results()[i].status != without.results()[i].status;
-                  }
-                  cells.push_back({kind.name, place.triangles(), n, degrees, set, way, asked.size(), off_us / number,
-                                   us / number, median(ratios), pairs > 0 ? culled / pairs : 0, pieces / number});
-                  const Cell& c = cells.back();
-                  fmt::print(
-                      "{:<18} {:>8} {:>5} {:>4g} {:<8} {:<9} {:<9} {:>5} {:>9.1f} {:>9.1f} {:>7.2f} {:>6.1f}% "
-                      "{:>8.0f}\n",
-                      c.scene, c.triangles, c.links, c.degrees, c.set, c.way.executor, nameOf(c.way.mode), c.way.batch,
-                      c.off_us, c.us, c.ratio, 100 * c.culled, c.drawn);
-                  std::cout.flush();
-                }
-              }
+            for (std::size_t e = 0; e < executors.size(); ++e) {
+              place.manager().setVisibility(cullers[e]);
+              Cell cell{kind.name, place.triangles(), n, degrees, set, executors[e], 0, 0, 0, 0, 0, 0};
+              differ += measure(place, motions, blocks, cell);
+              addCell(cell);
             }
           }
         }
       }
     }
   }
-  report.write(name + ".csv", csvOf(cells));
+  report.write("bench_visibility_map.csv", csv);
   if (differ) fmt::print("{} verdicts differ\n", differ);
   return differ ? 1 : 0;
 }

@@ -290,7 +290,7 @@ std::string textOf(const Outcome& o) {
                        o.commandOf(o.slowestOf(*row)));
   }
   if (o.asked.visibility() != VisibilityMode::off) {
-    out += fmt::format("stage 2, {}: {}\n", nameOf(o.asked.visibility()), visibilityText(o.asked.stage2()));
+    out += fmt::format("stage 2, on: {}\n", visibilityText(o.asked.stage2()));
   }
   for (const std::string& note : o.asked.notes()) out += fmt::format("note: {}\n", note);
   return out;

@@ -9,24 +9,9 @@ namespace fcl_artic::app {
 
 using Json = nlohmann::ordered_json;
 
-const std::vector<std::pair<std::string, VisibilityMode>>& visibilityModes() {
-  static const std::vector<std::pair<std::string, VisibilityMode>> kModes{{"off", VisibilityMode::off},
-                                                                          {"on", VisibilityMode::on},
-                                                                          {"automatic", VisibilityMode::automatic},
-                                                                          {"at-once", VisibilityMode::atOnce}};
-  return kModes;
-}
-
-std::string nameOf(VisibilityMode wanted) {
-  for (const auto& [name, mode] : visibilityModes()) {
-    if (mode == wanted) return name;
-  }
-  return {};
-}
-
 Json visibilityJson(VisibilityMode mode, const QueryStatistics& s) {
   if (mode == VisibilityMode::off) return {};
-  Json out{{"mode", nameOf(mode)},
+  Json out{{"mode", "on"},
            {"used", !s.visibility_executor.empty()},
            {"executor", s.visibility_executor.empty() ? Json() : Json(s.visibility_executor)},
            {"fallback", s.visibility_fallback.empty() ? Json() : Json(s.visibility_fallback)}};

@@ -15,10 +15,6 @@
 
 namespace fcl_artic::app {
 
-/// The modes with their names: "off", "on", "automatic" and "at-once".
-const std::vector<std::pair<std::string, VisibilityMode>>& visibilityModes();
-/// The name of a mode.
-std::string nameOf(VisibilityMode mode);
 /// The work of stage 2 in JSON: whether it was used, by which executor, its counts; null if it was off.
 nlohmann::ordered_json visibilityJson(VisibilityMode mode, const QueryStatistics& statistics);
 /// The same for a reader, in a line without an end.

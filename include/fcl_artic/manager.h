@@ -234,7 +234,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   std::string describeTolerances() const;
 
   /// Selects the culler of stage 2, culling by visibility (CertifiedRequest::visibility); null: the CPU culler, which
-  /// is the default. Effective at once. The manager forgets what VisibilityMode::automatic has measured.
+  /// is the default. Effective at once.
   void setVisibility(std::shared_ptr<const VisibilityCuller> culler);
 
   /// Makes all changes effective. Needed before the first query, after every member that says so, and after the tree
@@ -327,10 +327,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   [[nodiscard]] bool isFree(const JointMotion& motion, const CertifiedRequest& request = {}) const;
 
   /// Finds the first contacts of many motions on several threads. Result i is what motion i gets by itself, bit for
-  /// bit, except for measured times, the work of stage 2 and what VisibilityMode::automatic chose. With
-  /// VisibilityMode::atOnce it is so with the executor cpu, and the others keep the promise.
-  ///
-  /// Where stage 2 takes part, with Method::standard, it draws hundreds of these motions in one pass.
+  /// bit, except for measured times and the work of stage 2.
   /// @param request  `progress` is not called.
   /// @param[out] results  resized to the number of motions; its memory is used again.
   /// @param threads  maximum number of threads; 0: as many as the machine runs at once.
@@ -429,7 +426,6 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
  private:
   struct Impl;
   struct QueryContext;
-  class BatchWithVisibility;
   void collideMotion(const JointMotion& motion, const CertifiedRequest& request, CertifiedResult& result) const;
   void collideMotion(const JointMotion& motion, const CertifiedRequest& request, const QueryContext& context,
                      CertifiedResult& result) const;

@@ -23,8 +23,7 @@ struct FCL_ARTIC_EXPORT RecordedQuery {
   CertifiedRequest request;                   ///< The request; `progress` is empty.
 
   /// Asks the query again. The answer has the same bits as the first one, except for measured times, if
-  /// instructionSet() and the rounding mode are the same. (VisibilityMode::automatic may choose otherwise: then the
-  /// work differs.)
+  /// instructionSet() and the rounding mode are the same.
   /// @throws as ArticulatedCollisionManager::continuousCollide().
   [[nodiscard]] CertifiedResult ask() const;
 };

@@ -19,16 +19,11 @@ enum class ContactMode {
 };
 
 /// Whether stage 2, culling by visibility (doc/VISIBILITY.md), takes part in a query of an ArticulatedCollisionManager.
-/// It looks at links against obstacles, still or moving, and against links. With `off`, `on` and `automatic` answers
-/// are the same bits; a work budget turns the stage off there.
+/// It looks at links against obstacles, still or moving, and against links. Answers are the same bits either way; a
+/// work budget turns the stage off.
 enum class VisibilityMode {
-  off,        ///< Never.
-  on,         ///< Always. A query that does not end as plainly free is solved again without the stage.
-  automatic,  ///< As `on` when that saves time, as measured on the manager's own queries; else as `off`.
-  /// Always, and a query is solved once, with what the stage has proven free left out. The answer keeps the whole
-  /// promise. But a contact's bracket, its point and which of several contacts is reported may be others than with
-  /// `off`, and may depend on the executor. A work budget counts what the solver does; it does not turn the stage off.
-  atOnce,
+  off,  ///< Never.
+  on,   ///< Always. A query that does not end as plainly free is solved again without the stage.
 };
 
 /// The method that solves a query. Both make the same promise (doc/PROMISE.md).

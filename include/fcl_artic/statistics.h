@@ -73,11 +73,11 @@ struct RedonStatistics {
 struct VisibilityStatistics {
   std::uint64_t pairs = 0;          ///< Pairs that it looked at.
   std::uint64_t culled = 0;         ///< Pairs that it proved free.
-  std::uint64_t nodes = 0;          ///< Nodes of the other bodies' trees that it proved free, in other pairs.
+  std::uint64_t nodes = 0;          ///< Nodes of large bodies that it proved free, in other pairs.
   std::uint64_t pieces = 0;         ///< Pieces of the other bodies that it drew.
-  std::uint64_t trials = 0;         ///< Queries that `automatic` answered both ways, to compare.
+  std::uint64_t trials = 0;         ///< Always 0: no query is answered both ways to compare.
   std::uint64_t repeated = 0;       ///< Queries that were solved again without it, as they were not simply free.
-  double us = 0;                    ///< Time, trials included, µs; always measured.
+  double us = 0;                    ///< Time, µs; always measured.
   std::uint64_t link_pairs = 0;     ///< Of `pairs`, those of two links.
   std::uint64_t link_culled = 0;    ///< Of `culled`, those of two links.
   std::uint64_t moving_pairs = 0;   ///< Of `pairs`, those of a link and an obstacle that moves.

@@ -4,9 +4,11 @@
 // on it, by construction: it shortens proofs that a motion is free, and any other answer is found without it.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "fcl_artic/export.h"
 
@@ -16,33 +18,32 @@ namespace fcl_artic {
 enum class VisibilityRule {
   /// Each convex piece of an obstacle is compared with the swept volume's interval of depth, pixel by pixel.
   intervals,
-  /// CULLIDE's (Govindaraju et al. 2003): an obstacle is free if all of it is seen in front of the swept volume, or
-  /// behind it.
-  occlusion,
 };
 
 /// Options of a VisibilityCuller.
 struct VisibilityOptions {
   VisibilityRule rule = VisibilityRule::intervals;  ///< The rule by which obstacles are proven free.
   int resolution = 32;                              ///< Pixels along a side of each view, 4 to 128.
-  /// Looks at every pair of two links that their bounds leave. Default: only at those of which one link comes into the
-  /// box around the other's geometry, as an arm in a cabin does. For the others the exact tests cost less than a look.
-  bool every_link_pair = false;
+  bool every_link_pair = false;                     ///< Must be false: of links the stage picks the pairs itself.
 };
+
+class VisibilityCuller;
 
 /// Culling by visibility, inside.
 namespace visibility {
 /// Draws what links sweep and the obstacles near it, and judges by the rule; internal.
 class Executor;
-/// Lends an executor to one query; internal.
-class ExecutorLoan;
+/// Volumes to be drawn for one query; internal.
+struct Batch;
+/// Has a culler's executor draw; internal.
+std::string runBy(const VisibilityCuller& culler, const Batch& batch, std::vector<std::uint8_t>& may);
 /// Function that makes an executor, which one thread at a time uses. It throws std::runtime_error naming what is
 /// missing.
 using ExecutorFactory = std::function<std::unique_ptr<Executor>()>;
 }  // namespace visibility
 
 /// Culls by visibility, for ArticulatedCollisionManager::setVisibility(). May be used by many threads and managers at
-/// once: each query at work has an executor of its own, made when first needed and kept.
+/// once. An executor other than `cpu` is made when first needed; queries take turns with it.
 class FCL_ARTIC_EXPORT VisibilityCuller {
  public:
   /// Creates a culler with the executor `cpu`: own scan conversion, without OpenGL.
@@ -69,7 +70,8 @@ class FCL_ARTIC_EXPORT VisibilityCuller {
   std::string fallbackReason() const;
 
  private:
-  friend class visibility::ExecutorLoan;
+  friend std::string visibility::runBy(const VisibilityCuller& culler, const visibility::Batch& batch,
+                                       std::vector<std::uint8_t>& may);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

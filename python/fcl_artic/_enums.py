@@ -29,21 +29,16 @@ class ContactMode(enum.Enum):
 
 
 class VisibilityMode(enum.Enum):
-    """Whether culling by visibility takes part in a query. Answers are the same bits but with ``AT_ONCE``."""
+    """Whether culling by visibility takes part in a query. Answers are the same bits either way."""
 
     OFF = "off"
     ON = "on"
-    AUTOMATIC = "automatic"
-    """When it saves time, as measured on the world's own queries."""
-    AT_ONCE = "at_once"
-    """What it proves is used for contacts too: the same promise, but a contact's last digits may be others."""
 
 
 class VisibilityRule(enum.Enum):
     """The rule by which a piece of an obstacle is proven free of what a link sweeps."""
 
     INTERVALS = "intervals"
-    OCCLUSION = "occlusion"
 
 
 class VisibilityExecutor(enum.Enum):
@@ -107,3 +102,16 @@ class LinkPairKind(enum.Enum):
     """In contact in some configurations and not in others."""
     UNPROVEN = "unproven"
     """In contact in no configuration that was tried, and yet not proven apart."""
+
+
+_MODE_IS_GONE = "that mode is gone: with 'on' and 'off' answers are the same"
+_GONE = {
+    (VisibilityMode, "automatic"): _MODE_IS_GONE,
+    (VisibilityMode, "at_once"): _MODE_IS_GONE,
+    (VisibilityRule, "occlusion"): "that rule is gone: 'intervals' proves the same of more obstacles",
+}
+
+
+def note_on_gone(enumeration: type, value: str) -> str:
+    """The advice on a value that an enumeration no longer has; empty for others."""
+    return _GONE.get((enumeration, value), "")

@@ -581,9 +581,7 @@ void bindChanges(py::class_<World>& world) {
             w.manager().change([&](ArticulatedCollisionManager& m) { m.setVisibility(culler); });
           },
           "Selects who culls by visibility in queries that ask for it (Request.visibility). `resolution`: pixels along "
-          "a "
-          "side of each view. `every_link_pair`: it looks at all pairs of two links that their bounds leave, not only "
-          "at those of which one comes into the box around the other's geometry.",
+          "a side of each view. `every_link_pair` must be False.",
           py::arg("executor") = "cpu", py::kw_only(), py::arg("rule") = "intervals", py::arg("resolution") = 32,
           py::arg("every_link_pair") = false)
       .def(

@@ -581,26 +581,20 @@ def test_visibility_does_not_change_answers(world, hit, miss):
         alone = world.check(q0, q1)
         culled = world.check(q0, q1, visibility="on")
         assert (alone.status, alone.t_lower, alone.pair) == (culled.status, culled.t_lower, culled.pair)
-        at_once = world.check(q0, q1, visibility="at_once")
-        assert at_once.status == alone.status
-        assert at_once.t_lower <= alone.t_upper and alone.t_lower <= at_once.t_upper
-        assert at_once.statistics["visibility"]["repeated"] == 0
     world.set_visibility("cpu", resolution=16)
     assert world.check(*hit, visibility=fcl_artic.VisibilityMode.ON).statistics["visibility_executor"] == "cpu"
     with pytest.raises(ValueError, match="resolution"):
         world.set_visibility("cpu", resolution=3)
 
 
-def test_visibility_may_look_at_every_pair_of_links(world, robot):
-    motions = list(zip(*random_motions(robot, 30)))
-    alone = [world.check(q0, q1).status for q0, q1 in motions]
-    looked_at = []
-    for every in (False, True):
-        world.set_visibility("cpu", every_link_pair=every)
-        answers = [world.check(q0, q1, visibility="on") for q0, q1 in motions]
-        assert [answer.status for answer in answers] == alone
-        looked_at.append(sum(answer.statistics["visibility"]["link_pairs"] for answer in answers))
-    assert looked_at[0] < looked_at[1]
+def test_options_of_visibility_that_are_gone_say_what_to_use(world, hit):
+    for mode in ("automatic", "at_once"):
+        with pytest.raises(ValueError, match="that mode is gone: with 'on' and 'off' answers are the same"):
+            world.check(*hit, visibility=mode)
+    with pytest.raises(ValueError, match="'intervals' proves the same"):
+        world.set_visibility("cpu", rule="occlusion")
+    with pytest.raises(ValueError, match="every_link_pair is gone"):
+        world.set_visibility("cpu", every_link_pair=True)
 
 
 def test_objects_are_kept_alive_as_long_as_they_are_used(data, miss):

@@ -13,7 +13,6 @@
 namespace fcl_artic {
 namespace {
 
-using baseline::Vec3;
 using engine::Piece;
 using engine::PieceKind;
 
@@ -28,8 +27,10 @@ double squareFrom(const engine::Node& node, const Eigen::Vector3d& x) {
 /// sum is 1 its point is one of the bodies' difference: only that is relied on.
 double nearestOf(const baseline::Simplex& s) {
   if (s.n < 4) return norm(combined(s));
-  const auto volume = [](const Vec3& a, const Vec3& b, const Vec3& c) { return dot(a, cross(b, c)); };
-  const Vec3 &a = s.v[0].w, &b = s.v[1].w, &c = s.v[2].w, &d = s.v[3].w;
+  const auto volume = [](const baseline::Vec3& a, const baseline::Vec3& b, const baseline::Vec3& c) {
+    return dot(a, cross(b, c));
+  };
+  const baseline::Vec3 &a = s.v[0].w, &b = s.v[1].w, &c = s.v[2].w, &d = s.v[3].w;
   const double parts[4] = {volume(b, c, d), -volume(a, c, d), volume(a, b, d), -volume(a, b, c)};
   const double sum = parts[0] + parts[1] + parts[2] + parts[3];
   double nearest = std::numeric_limits<double>::infinity();
@@ -37,8 +38,8 @@ double nearestOf(const baseline::Simplex& s) {
     nearest = norm(a * (parts[0] / sum) + b * (parts[1] / sum) + c * (parts[2] / sum) + d * (parts[3] / sum));
   }
   for (int out = 0; out < 4; ++out) {  // a flat one's faces
-    const Vec3 &x = s.v[(out + 1) & 3].w, &y = s.v[(out + 2) & 3].w, &z = s.v[(out + 3) & 3].w;
-    const Vec3 weights = baseline::nearestOnTriangle(x, y, z);
+    const baseline::Vec3 &x = s.v[(out + 1) & 3].w, &y = s.v[(out + 2) & 3].w, &z = s.v[(out + 3) & 3].w;
+    const baseline::Vec3 weights = baseline::nearestOnTriangle(x, y, z);
     const double found = norm(x * weights[0] + y * weights[1] + z * weights[2]);
     nearest = std::min(nearest, found);
   }
@@ -53,7 +54,7 @@ bool Nearness::isNearPiece(std::int32_t index, const Eigen::Vector3d& x, double 
     const MeshTriangle triangle = triangleOf(tree_, index);
     return (nearestPoint(triangle, x) - x).squaredNorm() <= most * most;
   }
-  const Vec3 at(x.data());
+  const baseline::Vec3 at(x.data());
   const double known = distanceFrom(piece, spread(at))[0];
   if (known < baseline::kInfinite) return known <= most;
   Piece point;
@@ -67,8 +68,8 @@ bool Nearness::isNearPiece(std::int32_t index, const Eigen::Vector3d& x, double 
   body.pose.c = {0, 0, 0};
   baseline::GjkResult found;
   const double within = most + piece.radius;
-  baseline::gjk<true>(body, at - baseline::pointWithin(tree_, piece, Vec3(0, 0, 0)), {1e-6, within, 100, within},
-                      found);
+  baseline::gjk<true>(body, at - baseline::pointWithin(tree_, piece, baseline::Vec3(0, 0, 0)),
+                      {1e-6, within, 100, within}, found);
   return nearestOf(found.simplex) <= within;
 }
 

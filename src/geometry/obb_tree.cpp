@@ -275,35 +275,4 @@ void ObbTree::buildNodes() {
   }
 }
 
-void ObbTree::nodesWithin(const TreeView& body, const std::uint64_t* given, std::vector<std::uint64_t>& out) const {
-  std::vector<bool> piece_given(static_cast<std::size_t>(body.num_pieces), false);
-  struct Task {
-    int node;
-    bool given;
-  };
-  std::vector<Task> tasks{{0, false}};
-  while (!tasks.empty()) {
-    const Task task = tasks.back();
-    tasks.pop_back();
-    const engine::Node& node = body.nodes[task.node];
-    const bool all = task.given || (given[task.node / 64] >> task.node % 64 & 1);
-    if (node.isLeaf()) {
-      piece_given[static_cast<std::size_t>(node.piece())] = all;
-    } else {
-      tasks.push_back({node.left(), all});
-      tasks.push_back({node.right(), all});
-    }
-  }
-  out.assign((nodes_.size() + 63) / 64, 0);
-  for (std::size_t i = nodes_.size(); i-- > 0;) {  // children come after their parents
-    const ObbNode& node = nodes_[i];
-    const auto isIn = [&](std::int32_t n) { return (out[static_cast<std::size_t>(n) / 64] >> n % 64 & 1) != 0; };
-    const bool in =
-        node.isLeaf()
-            ? piece_given[static_cast<std::size_t>(triangles_[static_cast<std::size_t>(node.triangle())].piece)]
-            : isIn(node.child) && isIn(node.child + 1);
-    if (in) out[i / 64] |= std::uint64_t{1} << i % 64;
-  }
-}
-
 }  // namespace fcl_artic

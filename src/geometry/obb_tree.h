@@ -51,11 +51,6 @@ class ObbTree {
   const std::vector<ObbTriangle>& triangles() const { return triangles_; }
   const std::vector<ObbEdge>& edges() const { return edges_; }
   const double* vertex(int i) const { return &vertices_[3 * static_cast<std::size_t>(i)]; }
-  /// Nodes all of whose triangles are of pieces below some nodes of the body's own tree.
-  /// @param body   what this was made of.
-  /// @param given  nodes of it, a bit each.
-  /// @param[out] out  nodes of this tree, a bit each.
-  void nodesWithin(const engine::TreeView& body, const std::uint64_t* given, std::vector<std::uint64_t>& out) const;
   int numVertices() const { return static_cast<int>(vertices_.size() / 3); }
 
  private:

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Advisors of the solver: tables of two links, grids of where balls meet, culling by visibility, or your own. An
-// advisor clears parts of the motion in which it has proven a pair free, and nodes of the still body's tree; it
-// suggests where contact is likely. The solver trusts what is cleared. A contact that is suggested counts only if the
-// solver proves it. One advisor clears without a proof: visibility::DrawingPass::assume(). Its answer counts only if
-// draw() proves afterwards that all that was cleared is free. Plain data.
+// advisor clears parts of the motion in which it has proven a pair, or a node of a large body, free; it suggests where
+// contact is likely. The solver trusts what is cleared. A contact that is suggested counts only if the solver proves
+// it. Plain data.
 #pragma once
 
 #include <cstdint>
@@ -25,17 +24,15 @@ struct SweptLink {
   double radius;
 };
 
-/// A pair of a link and another body that stage 1 left.
+/// A pair of a link and another body that stage 1 left, or a node of the other body, if that is a large one.
 struct CullCandidate {
   PairId pair;
+  std::int32_t node;    ///< of the other body's tree; 0: all of it
   std::int32_t swept;   ///< links[8 * swept + k]: what the link sweeps in part k
   std::int32_t still;   ///< the other body, which stands still in the frame of these
   const Placement* at;  ///< of its tree in that frame
   std::uint32_t lanes;  ///< parts of the motion in which their bounds meet
   double margin;        ///< of the pair
-  /// One bit per node of the other body's tree: the node is proven free of the link over the whole motion; null: none
-  /// is. Must stay valid until the solver returns.
-  const std::uint64_t* free_nodes = nullptr;
 };
 
 /// A pair that is worth a look in the middle of the part [k/8, (k+1)/8] of a motion.
@@ -53,11 +50,11 @@ struct Advisor {
   /// The same bits for one link pair, for answers that cost more: called only for pairs that stage 1's own bounds
   /// leave.
   unsigned (*freePartsOf)(void* self, std::int32_t link_pair) = nullptr;
-  /// Called between stage 1 and the first batch. May clear bits of `lanes` in which a pair is proven free, and set
-  /// `free_nodes`. Pairs with the same `swept` lie together and share a frame. Pairs of links and still obstacles come
-  /// first, ordered by link, then the others in the order of their numbers.
-  void (*clear)(void* self, const Problem& problem, const SweptLink* links, CullCandidate* pairs,
-                std::int32_t num_pairs) = nullptr;
+  /// Called between stage 1 and the first batch. May clear bits of `lanes` in which a candidate is proven free.
+  /// Candidates with the same `swept` lie together and share a frame; so do those of a pair. Pairs of links and still
+  /// obstacles come first, ordered by link, then the others in the order of their numbers.
+  void (*clear)(void* self, const Problem& problem, const SweptLink* links, CullCandidate* candidates,
+                std::int32_t num_candidates) = nullptr;
   /// Where balls inside links are likely to meet. Called only with Query::any, before stage 1.
   const LikelyContact* (*suggest)(void* self, std::int32_t& count) = nullptr;
 };

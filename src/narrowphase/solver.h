@@ -38,7 +38,7 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   statistics.culling_us = task.now() - time0;
 
   if (problem.contained && !horizon.isOver()) containment.findAtStart();
-  if (query.num_advisors && !horizon.isOver()) stage_one.refine(traversal, open);
+  if (query.num_advisors && !horizon.isOver()) stage_one.refine(open);
   const double time1 = task.now();
   if (query.ignore_initial && !horizon.isOver()) {
     initial.collect(open);

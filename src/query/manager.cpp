@@ -160,7 +160,7 @@ std::string ArticulatedCollisionManager::describeTolerances() const {
 }
 
 void ArticulatedCollisionManager::setVisibility(std::shared_ptr<const VisibilityCuller> culler) {
-  impl_->stage2 = std::make_unique<Stage2>(culler ? std::move(culler) : std::make_shared<VisibilityCuller>());
+  impl_->culler = culler ? std::move(culler) : std::make_shared<VisibilityCuller>();
 }
 
 void ArticulatedCollisionManager::setup() {

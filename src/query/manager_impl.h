@@ -16,21 +16,8 @@
 #include "setup/neighbour_findings.h"
 #include "setup/registry.h"
 #include "setup/setup.h"
-#include "visibility/choice.h"
-#include "visibility/culler.h"
 
 namespace fcl_artic {
-
-/// Who does stage 2, and what it was measured to be worth to each solver.
-struct Stage2 {
-  explicit Stage2(std::shared_ptr<const VisibilityCuller> by)
-      : culler(std::move(by)),
-        standard(visibility::ExecutorLoan::makingCost(*culler)),
-        redon(visibility::ExecutorLoan::makingCost(*culler)),
-        batches(visibility::ExecutorLoan::makingCost(*culler)) {}
-  std::shared_ptr<const VisibilityCuller> culler;
-  visibility::Choice standard, redon, batches;  ///< the last one by Method::standard
-};
 
 /// Finds out what neighbours do over all values of the joint between them (setup/neighbour_findings.h). It looks at
 /// neighbours that the matrix neither allows nor has checked, for the rule; and at those that it allows, for what
@@ -89,7 +76,7 @@ struct ArticulatedCollisionManager::Impl {
   Setup setup;
   mutable std::mutex world_mutex_;
   mutable std::shared_ptr<const certificate::World> world_;
-  std::unique_ptr<Stage2> stage2 = std::make_unique<Stage2>(std::make_shared<VisibilityCuller>());
+  std::shared_ptr<const VisibilityCuller> culler = std::make_shared<VisibilityCuller>();  ///< never null
 };
 
 }  // namespace fcl_artic

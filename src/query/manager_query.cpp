@@ -15,7 +15,7 @@
 #include "query/query_context.h"
 #include "query/report.h"
 #include "query/tube_witness.h"
-#include "visibility/solve.h"
+#include "visibility/stage.h"
 
 namespace fcl_artic {
 namespace {
@@ -136,30 +136,18 @@ struct Solved {
   RedonStatistics redon;
 };
 
-/// @param advisor  takes the place of stage 2; null: the request's.
-void solve(const Registry& registry, Stage2& stage2, const engine::Advisor* advisor, const CertifiedRequest& request,
-           const engine::Problem& problem, engine::Query& query, QueryWorkspace& workspace, Solved& solved) {
-  if (advisor) {
-    FCL_ARTIC_ASSERT(request.method == Method::standard);
-    query.ask(*advisor);
-    workspace.engine.solve(problem, query, solved.answer);
-  } else if (request.method == Method::redon2004) {
-    const auto treeOf = [&](std::int32_t body) { return registry.body(body).shape->obbTree(); };
-    const auto method = [&](const engine::Query& asked, engine::Answer& out) {
-      RedonStatistics work;
-      redon::solve(workspace.redon(), workspace.engine, problem, asked, request.redon, treeOf, out, work);
-      engine::addFields(work, solved.redon);  // of both solves, where there are two
-      solved.redon.pairs_by_standard = work.pairs_by_standard;
-    };
-    visibility::solve(*stage2.culler, stage2.redon, request.visibility, method, problem, query, solved.answer,
-                      solved.stage);
-  } else {
-    const auto method = [&](const engine::Query& asked, engine::Answer& out) {
-      workspace.engine.solve(problem, asked, out);
-    };
-    visibility::solve(*stage2.culler, stage2.standard, request.visibility, method, problem, query, solved.answer,
-                      solved.stage);
-  }
+void solve(const Registry& registry, const VisibilityCuller& culler, const CertifiedRequest& request,
+           const engine::Problem& problem, const engine::Query& query, QueryWorkspace& workspace, Solved& solved) {
+  const auto treeOf = [&](std::int32_t body) { return registry.body(body).shape->obbTree(); };
+  const auto method = [&](const engine::Query& asked, engine::Answer& out) {
+    if (request.method == Method::standard) return workspace.engine.solve(problem, asked, out);
+    RedonStatistics work;
+    redon::solve(workspace.redon(), workspace.engine, problem, asked, request.redon, treeOf, out, work);
+    engine::addFields(work, solved.redon);  // of both solves, where there are two
+    solved.redon.pairs_by_standard = work.pairs_by_standard;
+  };
+  if (request.visibility == VisibilityMode::off) return method(query, solved.answer);
+  visibility::solve(culler, method, problem, query, solved.answer, solved.stage);
 }
 
 /// A contact as users see it, links before obstacles.
@@ -183,10 +171,9 @@ CertifiedContact report(const Registry& registry, const JointMotion& motion, con
 /// The solver's work and stage 2's.
 QueryStatistics workOf(const Solved& solved) {
   QueryStatistics statistics = statisticsOf(solved.answer.statistics);
-  const visibility::Report& stage = solved.stage;
-  statistics.visibility = stage;
-  statistics.visibility_executor = stage.executor;
-  statistics.visibility_fallback = stage.fallback;
+  statistics.visibility = solved.stage.work;
+  statistics.visibility_executor = solved.stage.executor;
+  statistics.visibility_fallback = solved.stage.fallback;
   statistics.redon = solved.redon;
   return statistics;
 }
@@ -280,7 +267,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   }
   query.check_self = problem.num_link_pairs > 0;
   Solved solved;
-  solve(registry, *impl_->stage2, context.stage2, request, problem, query, *workspace, solved);
+  solve(registry, *impl_->culler, request, problem, query, *workspace, solved);
   const engine::Answer& answer = solved.answer;
   const Clock::time_point end = request.measure_times ? Clock::now() : Clock::time_point();
 

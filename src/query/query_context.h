@@ -9,7 +9,6 @@
 
 #include "fcl_artic/manager.h"
 #include "fcl_artic/trajectory.h"
-#include "model/advisor.h"
 #include "model/answer.h"
 #include "motion/part_of_motion.h"
 
@@ -24,7 +23,7 @@ inline TimePart partOfTime(const JointTrajectory& trajectory, std::size_t piece)
   return {at(piece), at(piece + 1)};
 }
 
-/// Settings beyond the request of a query of one motion, for trajectories, batches and clearance().
+/// Settings beyond the request of a query of one motion, for trajectories and clearance().
 struct ArticulatedCollisionManager::QueryContext {
   TimePart time;            ///< the part of the moving obstacles' motions that the query's [0, 1] is
   bool own_margins = true;  ///< pairs' own margins hold; false: those of neighbours alone (clearance())
@@ -41,9 +40,6 @@ struct ArticulatedCollisionManager::QueryContext {
     std::optional<engine::LeafContact> contact;  ///< the first contact, if it is proven
   };
   Details* details = nullptr;  ///< out
-  /// The advisor that takes the place of the request's stage 2, with Method::standard only; null: the request's
-  /// stage 2.
-  const engine::Advisor* stage2 = nullptr;
 
   /// The settings of a query of clearance(): pairs' own margins do not hold, but neighbours' do.
   static QueryContext ofClearance(const std::vector<engine::PairId>& left_out) {

@@ -4,6 +4,9 @@
 // made from it. The names of enumerations' values in JSON are here too.
 #pragma once
 
+#include <string>
+#include <type_traits>
+
 #include "fcl_artic/request.h"
 
 namespace fcl_artic {
@@ -18,12 +21,16 @@ inline constexpr NamedValue<ContactMode> kContactModes[] = {
     {ContactMode::first, "first"}, {ContactMode::any, "any"}, {ContactMode::firstOfEveryPair, "first_of_every_pair"}};
 inline constexpr NamedValue<Method> kMethods[] = {{Method::standard, "standard"}, {Method::redon2004, "redon2004"}};
 inline constexpr NamedValue<VisibilityMode> kVisibilityModes[] = {{VisibilityMode::off, "off"},
-                                                                  {VisibilityMode::on, "on"},
-                                                                  {VisibilityMode::automatic, "automatic"},
-                                                                  {VisibilityMode::atOnce, "at_once"}};
+                                                                  {VisibilityMode::on, "on"}};
 inline constexpr NamedValue<MotionEnclosure> kMotionEnclosures[] = {{MotionEnclosure::intervalChain, "interval_chain"},
                                                                     {MotionEnclosure::meanValue, "mean_value"},
                                                                     {MotionEnclosure::taylor, "taylor"}};
+/// The advice on a name that an enumeration's values no longer have; empty for other names.
+template <class E>
+const char* noteOnGone(const std::string& name) {
+  if (!std::is_same_v<E, VisibilityMode> || (name != "automatic" && name != "at_once")) return "";
+  return "; that mode is gone: with 'on' and 'off' answers are the same";
+}
 // All names of an enumeration, found by the type of the argument.
 constexpr const auto& namesOf(ContactMode) {
   return kContactModes;
@@ -82,7 +89,7 @@ void forEachRequestOption(const Visit& visit) {
                       "one: a link that touches one point of a cloud is not checked against the others."},
         &C::ignore_initial_contact);
   visit(RequestOption{"certificate", nullptr, "Whether a proof is asked for."}, &C::certificate);
-  visit(RequestOption{"visibility", nullptr, "When stage 2, culling by visibility, is used."}, &C::visibility);
+  visit(RequestOption{"visibility", nullptr, "Whether stage 2, culling by visibility, takes part."}, &C::visibility);
   visit(RequestOption{"method", nullptr, "The library's own method, or the paper's."}, &C::method);
   visit(RequestOption{"redon", nullptr, "Options of the paper's method."}, &C::redon);
   visit(RequestOption{"work_budget", "--budget", "Tests after which the answer is undecided; 0: no limit."},

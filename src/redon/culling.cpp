@@ -238,8 +238,7 @@ void Culling::start(const std::vector<BodyPair>& pairs) {
     finest_ = std::max(finest_, t.level);
   }
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const bool free = pairs[i].free_nodes && pairs[i].free_nodes[0] & 1;
-    if (relative_poses_[i].mask && !free) wait({static_cast<std::int32_t>(i), 0, 0, relative_poses_[i].mask});
+    if (relative_poses_[i].mask) wait({static_cast<std::int32_t>(i), 0, 0, relative_poses_[i].mask});
   }
 }
 
@@ -330,10 +329,7 @@ bool Culling::leafPairs(const std::vector<BodyPair>& pairs, int slot, std::vecto
       if (query_->work_budget && workOf(*counts_) > query_->work_budget) return false;
       const ObbNode &x = pair.a->nodes()[static_cast<std::size_t>(e.a)],
                     &y = pair.b->nodes()[static_cast<std::size_t>(e.b)];
-      const auto push = [&](std::int32_t a, std::int32_t b) {
-        if (pair.free_nodes && pair.free_nodes[a >> 6] >> (a & 63) & 1) return;
-        stack.push_back({number, a, b, e.mask});
-      };
+      const auto push = [&](std::int32_t a, std::int32_t b) { stack.push_back({number, a, b, e.mask}); };
       if (x.isLeaf() && y.isLeaf()) {
         ++counts_->leaf_pairs;
         out.push_back(

@@ -24,8 +24,6 @@ struct BodyPair {
   IntervalTransform inverse_a, placement_b;
   int level = 0;           ///< their line swept spheres' boxes meet in these parts
   std::uint64_t mask = 1;  ///< of the 2^level that the time is in
-  /// Nodes of A's tree, a bit each, that are proven free of B all the time; null: none.
-  const std::uint64_t* free_nodes = nullptr;
 };
 
 /// Two triangles whose boxes meet in some sub-interval.

@@ -87,7 +87,7 @@ void SweptVolumes::collect(const engine::Problem& problem, const engine::Query& 
       volumes_.push_back(v);
       previous = of_scene ? pair.parts.b : -1;
     }
-    candidates_.push_back({pair.index, static_cast<std::int32_t>(volumes_.size()) - 1, pair.parts.a,
+    candidates_.push_back({pair.index, 0, static_cast<std::int32_t>(volumes_.size()) - 1, pair.parts.a,
                            of_scene ? &a.placement : &kWhereItStands, lanes, margin});
   }
   links_.resize(kParts * volumes_.size());
@@ -108,13 +108,8 @@ void SweptVolumes::refine(const engine::Problem& problem, const engine::Query& q
       }
     }
   }
-  free_nodes_.resize(candidates_.size());
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    BodyPair& pair = pairs[i];
-    pair.mask &= partsAt(pair.level, candidates_[i].lanes, kPartsLevel);
-    if (!pair.mask || !candidates_[i].free_nodes) continue;
-    pair.a->nodesWithin(*problem.bodies[pair.parts.a].tree, candidates_[i].free_nodes, free_nodes_[i]);
-    pair.free_nodes = free_nodes_[i].data();
+    pairs[i].mask &= partsAt(pairs[i].level, candidates_[i].lanes, kPartsLevel);
   }
   pairs.erase(std::remove_if(pairs.begin(), pairs.end(), [](const BodyPair& pair) { return pair.mask == 0; }),
               pairs.end());

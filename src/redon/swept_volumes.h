@@ -19,8 +19,7 @@ namespace redon {
 
 class SweptVolumes {
  public:
-  /// Takes pairs out that stage 2 proves free, sub-intervals in which it does, and nodes of A's trees
-  /// (BodyPair::free_nodes, there until the next call).
+  /// Takes pairs out that stage 2 proves free, and sub-intervals in which it does.
   /// @param pairs  those of a link and still obstacles lie together, pairs of two bodies that move after them: as
   /// Culling::bodyPairs() gives them.
   void refine(const engine::Problem& problem, const engine::Query& query, const Options& options,
@@ -43,7 +42,6 @@ class SweptVolumes {
   std::vector<Volume> volumes_;
   std::vector<engine::CullCandidate> candidates_;
   std::vector<engine::SweptLink> links_;
-  std::vector<std::vector<std::uint64_t>> free_nodes_;  ///< by candidate
 };
 
 }  // namespace redon

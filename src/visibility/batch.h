@@ -3,7 +3,9 @@
 // The task and the answer of a visibility executor (doc/VISIBILITY.md): plain data, the same for all of them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "fcl_artic/visibility.h"
@@ -27,9 +29,6 @@ struct Window {
 /// values, to show that they notice wrong executors.
 struct Growth {
   bool footprint = true, depth = true;
-  /// Growth beyond half a pixel, in pixels: for snapping and rounding. Below 0: as much as the executor needs.
-  double eta = -1;
-  Growth orOwn(double needed) const { return {footprint, depth, eta < 0 ? needed : eta}; }
 };
 
 /// Swept volumes and the objects that may touch them, by windows.
@@ -44,9 +43,6 @@ struct Batch {
   };
 
   int resolution = 32;  ///< pixels along a tile's side
-  VisibilityRule rule = VisibilityRule::intervals;
-  /// The caller asks only whether a group survives: if one of its objects does, the executor may report all of them so.
-  bool groups_only = false;
   Growth growth;
   std::vector<double> points;
   /// A window must hold every point that one of its swept volumes has in common with one of its objects.
@@ -55,6 +51,7 @@ struct Batch {
   std::vector<Object> objects;  ///< those of a group lie together and share a window; groups are numbered from 0
   std::int32_t num_groups = 0;
 
+  const Window& windowOf(std::int32_t window) const { return windows[static_cast<std::size_t>(window)]; }
   void clear() {
     points.clear();
     windows.clear();
@@ -67,14 +64,18 @@ struct Batch {
 constexpr int kViews = 3;
 constexpr int kLargestResolution = 128;
 
-/// Tells which objects may overlap the swept volumes of their windows.
+/// Tells which groups of objects may overlap the swept volumes of their windows.
 class Executor {
  public:
   virtual ~Executor() = default;
-  /// @param[out] may  one entry per object: 0 is a proof that it overlaps none of the swept volumes of its window.
+  /// @param[out] may  one entry per group: 0 is a proof that none of its objects overlaps a swept volume of its window.
   /// @throws std::runtime_error if the executor fails: then nothing is known.
   virtual void run(const Batch& batch, std::vector<std::uint8_t>& may) = 0;
 };
+
+/// Has a culler's executor run a batch; the executor cpu, if there is none or if it fails.
+/// @return the name of the executor that did.
+std::string runBy(const VisibilityCuller& culler, const Batch& batch, std::vector<std::uint8_t>& may);
 
 }  // namespace visibility
 }  // namespace fcl_artic

@@ -9,13 +9,11 @@ namespace visibility {
 namespace {
 
 constexpr float kNothing = 3e38f;
-/// Growth::eta of this executor: nothing is snapped, and rounding is far less.
-constexpr double kEta = 1.0 / 64;
 /// A side flatter than this cuts no column off a row. It is ignored, unless the row as a whole is beyond it.
 constexpr double kFlat = 1e-6;
 
 /// Ends of a footprint in one row of pixels; empty where begin > end. The rounding of this is some 1e-8 pixels, which
-/// Growth::eta covers.
+/// kEta covers.
 void rowEnds(const Footprint& f, int row, int& begin, int& end) {
   const double y = row + 0.5;
   double x0 = f.x0, x1 = f.x1;
@@ -78,26 +76,24 @@ void CpuExecutor::drawSwept(const Batch& batch) {
         const int n = end - begin + 1;
         if (n <= 0) continue;
         rowDepths(footprint_, row, begin, n, lower, upper);
-        float* near = nearest_.data() + tile + static_cast<std::size_t>(row) * side + static_cast<std::size_t>(begin);
-        float* far = farthest_.data() + tile + static_cast<std::size_t>(row) * side + static_cast<std::size_t>(begin);
+        const std::size_t at = tile + static_cast<std::size_t>(row) * side + static_cast<std::size_t>(begin);
         for (int i = 0; i < n; ++i) {
-          near[i] = std::min(near[i], lower[i]);
-          far[i] = std::max(far[i], upper[i]);
+          const std::size_t pixel = at + static_cast<std::size_t>(i);
+          nearest_[pixel] = std::min(nearest_[pixel], lower[i]);
+          farthest_[pixel] = std::max(farthest_[pixel], upper[i]);
         }
       }
     }
   }
 }
 
-CpuExecutor::DepthFindings CpuExecutor::compareDepths(const Batch& batch, const Footprint& f, int window,
-                                                      int view) const {
-  DepthFindings findings;
-  const std::size_t index = static_cast<std::size_t>(kViews * window + view);
-  const bool intervals = batch.rule == VisibilityRule::intervals;
-  // As a whole before or behind all of the swept volumes.
-  if (intervals && !(f.bounds[0].upper >= tile_nearest_[index] && f.bounds[0].lower <= tile_farthest_[index]))
-    return findings;
-  const std::size_t tile = tileBegin(batch, window, view), side = static_cast<std::size_t>(batch.resolution);
+/// Whether in some pixel of the footprint its depths meet those of the swept volumes.
+bool CpuExecutor::meetsDepths(const Batch& batch, int window, int view) const {
+  const Footprint& f = footprint_;
+  const auto index = static_cast<std::size_t>(kViews * window + view),
+             side = static_cast<std::size_t>(batch.resolution);
+  // As a whole in front of all swept volumes, or behind all.
+  if (!(f.bounds[0].upper >= tile_nearest_[index] && f.bounds[0].lower <= tile_farthest_[index])) return false;
   float lower[kLargestResolution], upper[kLargestResolution];
   for (int row = f.y0; row <= f.y1; ++row) {
     int begin, end;
@@ -105,71 +101,35 @@ CpuExecutor::DepthFindings CpuExecutor::compareDepths(const Batch& batch, const 
     const int n = end - begin + 1;
     if (n <= 0) continue;
     rowDepths(f, row, begin, n, lower, upper);
-    const float* near = nearest_.data() + tile + static_cast<std::size_t>(row) * side + static_cast<std::size_t>(begin);
-    const float* far = farthest_.data() + tile + static_cast<std::size_t>(row) * side + static_cast<std::size_t>(begin);
-    int not_in_front = 0, not_behind = 0, between = 0;
+    const std::size_t at =
+        tileBegin(batch, window, view) + static_cast<std::size_t>(row) * side + static_cast<std::size_t>(begin);
+    int meets = 0;
     for (int i = 0; i < n; ++i) {
-      const int reaches = upper[i] >= near[i], begins = lower[i] <= far[i];
-      not_in_front |= reaches;
-      not_behind |= begins;
-      between |= reaches & begins;
+      const std::size_t pixel = at + static_cast<std::size_t>(i);
+      meets |= upper[i] >= nearest_[pixel] && lower[i] <= farthest_[pixel];
     }
-    findings.not_in_front |= not_in_front != 0;
-    findings.not_behind |= not_behind != 0;
-    findings.between |= between != 0;
-    if (findings.between) return {true, true, true};
+    if (meets) return true;
   }
-  return findings;
+  return false;
 }
 
 bool CpuExecutor::mayOverlap(const Batch& batch, const Batch::Object& object) {
-  const Window& window = batch.windows[static_cast<std::size_t>(object.window)];
+  if (unusable_[static_cast<std::size_t>(object.window)]) return true;
   for (int view = 0; view < kViews; ++view) {
-    const auto outcome = projector_.project(batch, object.volume, window, view, footprint_);
+    const auto outcome = projector_.project(batch, object.volume, batch.windowOf(object.window), view, footprint_);
     if (outcome == Projector::Outcome::unusable) return true;
-    if (outcome == Projector::Outcome::misses || !compareDepths(batch, footprint_, object.window, view).between)
-      return false;
-  }
-  return true;
-}
-
-/// CULLIDE's rule: the whole group in front of the swept volumes, or behind them, in some view.
-bool CpuExecutor::groupMayOverlap(const Batch& batch, std::size_t begin, std::size_t end) {
-  for (int view = 0; view < kViews; ++view) {
-    DepthFindings all;
-    for (std::size_t i = begin; i < end && !all.all(); ++i) {
-      const Batch::Object& object = batch.objects[i];
-      const auto outcome = projector_.project(batch, object.volume,
-                                              batch.windows[static_cast<std::size_t>(object.window)], view, footprint_);
-      if (outcome == Projector::Outcome::unusable) return true;
-      if (outcome == Projector::Outcome::misses) continue;
-      const DepthFindings findings = compareDepths(batch, footprint_, object.window, view);
-      all.not_in_front |= findings.not_in_front;
-      all.not_behind |= findings.not_behind;
-    }
-    if (!all.not_in_front || !all.not_behind) return false;
+    if (outcome == Projector::Outcome::misses || !meetsDepths(batch, object.window, view)) return false;
   }
   return true;
 }
 
 void CpuExecutor::run(const Batch& batch, std::vector<std::uint8_t>& may) {
-  projector_.setGrowth(batch.growth.orOwn(kEta));
+  projector_.setGrowth(batch.growth);
   drawSwept(batch);
-  may.assign(batch.objects.size(), 1);
-  std::size_t end = 0;
-  for (std::size_t begin = 0; begin < batch.objects.size(); begin = end) {
-    const Batch::Object& first = batch.objects[begin];
-    for (end = begin; end < batch.objects.size() && batch.objects[end].group == first.group;) ++end;
-    if (unusable_[static_cast<std::size_t>(first.window)]) continue;
-    if (batch.rule == VisibilityRule::occlusion) {
-      if (!groupMayOverlap(batch, begin, end))
-        std::fill(may.begin() + static_cast<std::ptrdiff_t>(begin), may.begin() + static_cast<std::ptrdiff_t>(end), 0);
-      continue;
-    }
-    for (std::size_t i = begin; i < end; ++i) {
-      may[i] = mayOverlap(batch, batch.objects[i]);
-      if (may[i] && batch.groups_only) break;  // the rest stays 1
-    }
+  may.assign(static_cast<std::size_t>(batch.num_groups), 0);
+  for (const Batch::Object& object : batch.objects) {
+    std::uint8_t& group = may[static_cast<std::size_t>(object.group)];
+    group = group || mayOverlap(batch, object);
   }
 }
 

@@ -16,15 +16,9 @@ class FCL_ARTIC_EXPORT CpuExecutor : public Executor {
   void run(const Batch& batch, std::vector<std::uint8_t>& may) override;
 
  private:
-  /// The findings of an object's fragments: some is not in front of the swept volumes, some not behind, some neither.
-  struct DepthFindings {
-    bool not_in_front = false, not_behind = false, between = false;
-    bool all() const { return not_in_front && not_behind && between; }
-  };
   void drawSwept(const Batch& batch);
-  DepthFindings compareDepths(const Batch& batch, const Footprint& footprint, int window, int view) const;
   bool mayOverlap(const Batch& batch, const Batch::Object& object);
-  bool groupMayOverlap(const Batch& batch, std::size_t begin, std::size_t end);
+  bool meetsDepths(const Batch& batch, int window, int view) const;
   std::size_t tileBegin(const Batch& batch, int window, int view) const {
     const auto side = static_cast<std::size_t>(batch.resolution);
     return static_cast<std::size_t>(kViews * window + view) * side * side;
@@ -32,9 +26,9 @@ class FCL_ARTIC_EXPORT CpuExecutor : public Executor {
 
   Projector projector_;
   Footprint footprint_;
-  std::vector<float> nearest_, farthest_;  ///< of the swept volumes, by tile and pixel
-  std::vector<float> tile_nearest_, tile_farthest_;
-  std::vector<std::uint8_t> unusable_;  ///< by window: something in it could not be drawn
+  std::vector<float> nearest_, farthest_;            ///< depths of the swept volumes, by tile and pixel
+  std::vector<float> tile_nearest_, tile_farthest_;  ///< the least and the largest of a tile
+  std::vector<std::uint8_t> unusable_;               ///< windows of whose swept volumes one can't be drawn
 };
 
 }  // namespace visibility

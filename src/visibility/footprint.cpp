@@ -140,13 +140,9 @@ Projector::Outcome Projector::project(const Batch& batch, const Volume& volume, 
 
   for (int k = 0; k < 2; ++k) {
     const double grow = half_ + radius_[k] + kDouble * (sums_[k] + radius_[k] + 1);
-    f.lo[k] = lo[k] - grow;
-    f.hi[k] = hi[k] + grow;
+    (k ? f.y0 : f.x0) = pixelAtOrAfter(lo[k] - grow, resolution_);
+    (k ? f.y1 : f.x1) = pixelAtOrBefore(hi[k] + grow, resolution_);
   }
-  f.x0 = pixelAtOrAfter(f.lo[0], resolution_);
-  f.x1 = pixelAtOrBefore(f.hi[0], resolution_);
-  f.y0 = pixelAtOrAfter(f.lo[1], resolution_);
-  f.y1 = pixelAtOrBefore(f.hi[1], resolution_);
   if (f.x0 > f.x1 || f.y0 > f.y1) return Outcome::misses;
 
   f.num_sides = f.num_bounds = 0;
@@ -176,47 +172,6 @@ Projector::Outcome Projector::project(const Batch& batch, const Volume& volume, 
   }
   addSlopes(f);
   return Outcome::mayCover;
-}
-
-int clipToTile(const Footprint& f, int resolution, double (*polygon)[2]) {
-  double other[kMaxCorners][2], (*from)[2] = polygon, (*to)[2] = other;
-  const double x0 = std::max(f.lo[0], 0.0), x1 = std::min(f.hi[0], static_cast<double>(resolution));
-  const double y0 = std::max(f.lo[1], 0.0), y1 = std::min(f.hi[1], static_cast<double>(resolution));
-  const double box[4][2] = {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
-  for (int i = 0; i < 4; ++i) {
-    polygon[i][0] = box[i][0];
-    polygon[i][1] = box[i][1];
-  }
-  int n = 4;
-  for (int s = 0; s < f.num_sides && n; ++s) {
-    const HalfPlane& side = f.sides[s];
-    const auto inside = [&](const double* p) { return side.a * p[0] + side.b * p[1] <= side.c; };
-    int crossings = 0, kept = 0;
-    for (int i = 0; i < n; ++i) crossings += inside(from[i]) != inside(from[(i + 1) % n]);
-    if (crossings > 2) continue;  // corners a rounding apart: a side less is a larger polygon
-    for (int i = 0; i < n; ++i) {
-      const double *p = from[i], *q = from[(i + 1) % n];
-      const double dp = side.c - side.a * p[0] - side.b * p[1], dq = side.c - side.a * q[0] - side.b * q[1];
-      if (inside(p)) {
-        to[kept][0] = p[0];
-        to[kept++][1] = p[1];
-      }
-      if (inside(p) != inside(q)) {
-        const double t = std::min(1.0, std::max(0.0, dp / (dp - dq)));
-        to[kept][0] = p[0] + t * (q[0] - p[0]);
-        to[kept++][1] = p[1] + t * (q[1] - p[1]);
-      }
-    }
-    n = kept;
-    std::swap(from, to);
-  }
-  if (from != polygon) {
-    for (int i = 0; i < n; ++i) {
-      polygon[i][0] = from[i][0];
-      polygon[i][1] = from[i][1];
-    }
-  }
-  return n < 3 ? 0 : n;
 }
 
 }  // namespace visibility

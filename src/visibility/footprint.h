@@ -4,7 +4,7 @@
 // (doc/VISIBILITY.md, "The rule"). Everything is computed in double and rounded outward.
 //
 // Symbols: view along axis k; pixel (i, j) is the square [i, i+1] x [j, j+1] of the tile, its centre at +1/2;
-//   (X, Y) a point in pixels, Z its depth, 0 to 1 over the window; eta: see Growth.
+//   (X, Y) a point in pixels, Z its depth, 0 to 1 over the window; eta: kEta.
 #pragma once
 
 #include <vector>
@@ -14,6 +14,9 @@
 
 namespace fcl_artic {
 namespace visibility {
+
+/// Growth beyond half a pixel, in pixels. It covers the rounding of executors: less than 10^-4.
+constexpr double kEta = 1.0 / 64;
 
 /// a X + b Y <= c, with (a, b) of length 1 or so.
 struct HalfPlane {
@@ -30,8 +33,7 @@ struct DepthBounds {
 /// least eta from its border.
 struct Footprint {
   static constexpr int kMaxSides = 20, kMaxBounds = 7;
-  int x0, x1, y0, y1;   ///< pixels, ends included; at least one
-  double lo[2], hi[2];  ///< the same box, not rounded to pixels
+  int x0, x1, y0, y1;  ///< pixels, ends included; at least one
   int num_sides, num_bounds;
   HalfPlane sides[kMaxSides];
   DepthBounds bounds[kMaxBounds];  ///< the first one has a = b = 0
@@ -45,10 +47,10 @@ class FCL_ARTIC_EXPORT Projector {
     mayCover,  ///< the volume may cover pixels: the footprint says which
     unusable,  ///< a number is not finite, or the window has no volume: nothing is known
   };
-  /// Growth of the footprints made from now on; eta is not below 0.
+  /// Growth of the footprints made from now on.
   void setGrowth(const Growth& growth) {
-    half_ = growth.footprint ? 0.5 + growth.eta : 0;
-    depth_half_ = growth.depth ? 0.5 + growth.eta : 0;
+    half_ = growth.footprint ? 0.5 + kEta : 0;
+    depth_half_ = growth.depth ? 0.5 + kEta : 0;
   }
   /// @param view  axis along which is looked, 0 to 2.
   Outcome project(const Batch& batch, const Volume& volume, const Window& window, int view, Footprint& footprint);
@@ -64,12 +66,6 @@ class FCL_ARTIC_EXPORT Projector {
   double half_ = 1, depth_half_ = 1;
   int resolution_, count_;
 };
-
-/// The footprint as a convex polygon within its tile, counter-clockwise.
-/// @param[out] polygon  x, y of each corner.
-/// @return number of corners; 0 when nothing of it is left.
-FCL_ARTIC_EXPORT int clipToTile(const Footprint& footprint, int resolution, double (*polygon)[2]);
-constexpr int kMaxCorners = Footprint::kMaxSides + 8;
 
 }  // namespace visibility
 }  // namespace fcl_artic

@@ -11,8 +11,7 @@
 namespace fcl_artic {
 namespace visibility {
 
-/// The rule in OpenGL 4.3: all tiles in one atlas, one draw of what is swept, one of the objects, one read. With the
-/// rule `occlusion`: a depth buffer and an occlusion query per group, view and direction.
+/// The rule in OpenGL 4.3: all tiles in one atlas, one draw of what is swept, one of the objects, one read.
 class GlExecutor : public Executor {
  public:
   /// @throws std::runtime_error when a shader or buffer can't be had.
@@ -21,39 +20,34 @@ class GlExecutor : public Executor {
   void run(const Batch& batch, std::vector<std::uint8_t>& may) override;
 
  private:
-  struct Vertex {
-    float position[2], corner[2], plane[4], flat_bounds[2];
-    std::uint32_t id;
-  };
-  /// Vertices of a group in a view, one after the other.
-  struct VertexRange {
-    std::int32_t first = 0, count = 0;
+  /// A footprint as shaders read it.
+  struct Record {
+    float box[4];   ///< x0, y0, x1 + 1, y1 + 1 in the tile's pixels
+    float tile[4];  ///< its corner in the atlas, number of sides, number of bounds
+    float sides[Footprint::kMaxSides][4];
+    float bounds[Footprint::kMaxBounds][4];
   };
   struct Current;  ///< the context is the thread's while it lives
 
-  void resizeAtlas(int columns, int rows, int resolution);
+  void resizeAtlas(int tiles, int resolution);
   void runWindows(const Batch& batch, std::int32_t begin, std::int32_t end, std::vector<std::uint8_t>& may);
-  void place(const Batch& batch, const Footprint& footprint, int tile, std::uint32_t id,
-             std::vector<Vertex>& vertices) const;
-  void draw(GLuint program, const std::vector<Vertex>& vertices) const;
-  void upload(const std::vector<Vertex>& vertices) const;
-  void markIntervals(std::vector<std::uint32_t>& flags);
-  void askQueries(std::vector<std::uint32_t>& flags);
+  bool add(const Batch& batch, const Volume& volume, std::int32_t window, std::int32_t first_window,
+           std::vector<Record>& to);
+  void draw(GLuint program, const std::vector<Record>& records) const;
+  void readFlags(std::vector<std::uint32_t>& flags) const;
   void requireNoError(const char* what) const;
 
   std::unique_ptr<OffscreenContext> context_;
   std::unique_ptr<GlFunctions> gl_;
-  double eta_ = 0;
-  GLuint swept_program_ = 0, object_program_ = 0, near_program_ = 0, far_program_ = 0;
-  GLuint array_ = 0, vertices_ = 0, flags_ = 0, intervals_ = 0, depths_ = 0, target_ = 0, empty_target_ = 0,
-         depth_target_ = 0;
+  GLuint swept_program_ = 0, object_program_ = 0, array_ = 0;
+  GLuint footprints_ = 0, flags_ = 0, intervals_ = 0;  ///< buffers, and a texture: the swept interval of each pixel
+  GLuint target_ = 0, empty_target_ = 0;               ///< the second one takes no colour: objects leave flags only
   int width_ = 0, height_ = 0, columns_ = 1;
-  std::vector<GLuint> queries_;
   // State of the present run.
   Projector projector_;
   Footprint footprint_;
-  std::vector<Vertex> swept_, objects_;
-  std::vector<VertexRange> ranges_;
+  std::vector<Record> swept_, objects_;  ///< three records of an object, one a view
+  std::vector<std::int32_t> group_of_;   ///< of each object
 };
 
 }  // namespace visibility

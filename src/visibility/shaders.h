@@ -1,43 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// GLSL 4.30 sources of the executors osmesa and egl. Bounds of depth come as flat attributes and are evaluated at the
-// pixel's centre, relative to its tile: the rasteriser interpolates nothing, and all numbers are those that footprint.h
-// bounds.
+//
+// GLSL 4.30 sources of the executors osmesa and egl. Each footprint is drawn as its box of whole pixels. Sides and
+// depth bounds are evaluated at the pixels' centres, relative to the tile: the rasteriser snaps and interpolates
+// nothing that counts.
 #pragma once
 
 namespace fcl_artic {
 namespace visibility {
 namespace shaders {
 
-constexpr const char* kVertex = R"(#version 430 core
-layout(location = 0) in vec2 position;  // pixels of the atlas
-layout(location = 1) in vec2 corner;    // of the tile
-layout(location = 2) in vec4 plane;     // a, b, lower, upper
-layout(location = 3) in vec2 flat_bounds;
-layout(location = 4) in uint id;
+#define FCL_ARTIC_FOOTPRINTS                                      \
+  "#version 430 core\n"                                           \
+  "struct Footprint { vec4 box, tile, sides[20], bounds[7]; };\n" \
+  "layout(std430, binding = 0) readonly buffer Footprints { Footprint footprints[]; };\n"
+
+constexpr const char* kVertex = FCL_ARTIC_FOOTPRINTS R"(
 uniform vec2 scale;
-flat out vec2 tile;
-flat out vec4 q;
-flat out vec2 z;
-flat out uint object;
+flat out int index;
 void main() {
-  tile = corner;
-  q = plane;
-  z = flat_bounds;
-  object = id;
-  gl_Position = vec4(position * scale - 1.0, 0.0, 1.0);
+  index = gl_InstanceID;
+  vec4 box = footprints[index].box;  // of the tile
+  vec2 pixel = vec2((gl_VertexID & 1) == 0 ? box.x : box.z, gl_VertexID < 2 ? box.y : box.w);
+  gl_Position = vec4((pixel + footprints[index].tile.xy) * scale - 1.0, 0.0, 1.0);
 })";
 
-/// Depth of the volume in this pixel: from depths().x to depths().y.
-#define FCL_ARTIC_DEPTHS                                   \
-  "#version 430 core\n"                                    \
-  "flat in vec2 tile;\n"                                   \
-  "flat in vec4 q;\n"                                      \
-  "flat in vec2 z;\n"                                      \
-  "flat in uint object;\n"                                 \
-  "vec2 depths() {\n"                                      \
-  "  vec2 p = gl_FragCoord.xy - tile;\n"                   \
-  "  float t = q.x * p.x + q.y * p.y;\n"                   \
-  "  return vec2(max(z.x, t + q.z), min(z.y, t + q.w));\n" \
+/// Depth of the volume in this pixel: from depths().x to depths().y; outside of the footprint nothing is drawn.
+#define FCL_ARTIC_DEPTHS                                          \
+  FCL_ARTIC_FOOTPRINTS                                            \
+  "flat in int index;\n"                                          \
+  "vec2 depths() {\n"                                             \
+  "  vec4 tile = footprints[index].tile;\n"                       \
+  "  vec2 p = gl_FragCoord.xy - tile.xy;\n"                       \
+  "  for (int i = 0; i < int(tile.z); ++i) {\n"                   \
+  "    vec4 side = footprints[index].sides[i];\n"                 \
+  "    if (side.x * p.x + side.y * p.y > side.z) discard;\n"      \
+  "  }\n"                                                         \
+  "  vec2 d = footprints[index].bounds[0].zw;\n"                  \
+  "  for (int i = 1; i < int(tile.w); ++i) {\n"                   \
+  "    vec4 bound = footprints[index].bounds[i];\n"               \
+  "    float t = bound.x * p.x + bound.y * p.y;\n"                \
+  "    d = vec2(max(d.x, t + bound.z), min(d.y, t + bound.w));\n" \
+  "  }\n"                                                         \
+  "  return d;\n"                                                 \
   "}\n"
 
 /// Swept volumes: blending keeps the least of each channel.
@@ -48,24 +52,18 @@ void main() {
   interval = vec2(d.x, -d.y);
 })";
 
-/// Objects: a fragment neither in front of the swept volumes nor behind them sets its object's flag.
+/// Objects: a fragment neither in front of the swept volumes nor behind them sets the footprint's flag.
 constexpr const char* kObjectFragment = FCL_ARTIC_DEPTHS R"(
-layout(std430, binding = 0) writeonly buffer Flags { uint flags[]; };
+layout(std430, binding = 1) writeonly buffer Flags { uint flags[]; };
 uniform sampler2D swept;
 void main() {
   vec2 d = depths();
   vec2 s = texelFetch(swept, ivec2(gl_FragCoord.xy), 0).xy;
-  if (d.y >= s.x && d.x <= -s.y) flags[object] = 1u;
+  if (d.y >= s.x && d.x <= -s.y) flags[index] = 1u;
 })";
 
-/// Depth for occlusion queries: the near bound of swept volumes and the far one of objects, or the other way round.
-/// Into [0.1, 0.9], monotone, so that nothing equals a cleared pixel.
-constexpr const char* kNearDepthFragment = FCL_ARTIC_DEPTHS R"(
-void main() { gl_FragDepth = clamp(0.25 + 0.5 * depths().x, 0.1, 0.9); })";
-constexpr const char* kFarDepthFragment = FCL_ARTIC_DEPTHS R"(
-void main() { gl_FragDepth = clamp(0.25 + 0.5 * depths().y, 0.1, 0.9); })";
-
 #undef FCL_ARTIC_DEPTHS
+#undef FCL_ARTIC_FOOTPRINTS
 
 }  // namespace shaders
 }  // namespace visibility

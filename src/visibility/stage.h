@@ -1,30 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Stage 2 of a query: takes pairs of a link and another body, and nodes of that body's tree, out that visibility proves
-// free (doc/VISIBILITY.md).
+// Stage 2 of a query, an advisor of the solver: takes pairs of a link and another body, and nodes of large bodies, out
+// that visibility proves free (doc/VISIBILITY.md).
 #pragma once
 
-#include <cstdint>
-#include <deque>
+#include <functional>
 #include <string>
 
+#include "fcl_artic/statistics.h"
+#include "model/answer.h"
 #include "model/query.h"
-#include "visibility/choice.h"
-#include "visibility/culler.h"
-#include "visibility/query_volumes.h"
+#include "visibility/batch.h"
 
 namespace fcl_artic {
 namespace visibility {
 
-/// An empty batch by the culler's options, of which only groups are asked.
-void beginBatch(const VisibilityCuller& culler, Batch& batch);
+/// The work of stage 2 in a query.
+struct Report {
+  VisibilityStatistics work;
+  std::string executor;  ///< empty: nothing was asked of one
+  std::string fallback;
+};
 
 class Stage {
  public:
-  /// @param kind  the culler's own executor, or cpu.
-  /// @param tolerance_distance  of the query, m: see QueryVolumes::add().
-  Stage(const VisibilityCuller& culler, ExecutorKind kind, double tolerance_distance, const Microseconds& now)
-      : culler_(culler), kind_(kind), tolerance_distance_(tolerance_distance), now_(now) {}
+  /// @param tolerance_distance  of the query, m: what is nearer stays, since the solver alone may take it for a
+  /// contact.
+  Stage(const VisibilityCuller& culler, double tolerance_distance, Report& report)
+      : culler_(culler), tolerance_distance_(tolerance_distance), report_(report) {}
 
   /// The solver's advisor that asks this stage.
   engine::Advisor advisor() {
@@ -34,22 +37,24 @@ class Stage {
     return advisor;
   }
 
-  // Its work.
-  VisibilityStatistics work;  ///< its time is without the making
-  double making_us = 0;       ///< of an executor
-  std::string executor;       ///< empty: nothing was asked of one
-
  private:
   static void clear(void* stage, const engine::Problem& problem, const engine::SweptLink* links,
-                    engine::CullCandidate* pairs, std::int32_t num_pairs);
-  void run(const engine::Problem& problem, const engine::SweptLink* links, engine::CullCandidate* pairs,
-           std::int32_t num_pairs, ExecutorLoan& loan);
+                    engine::CullCandidate* candidates, std::int32_t n);
+
   const VisibilityCuller& culler_;
-  ExecutorKind kind_;
-  double tolerance_distance_;
-  const Microseconds& now_;
-  std::deque<QueryVolumes> volumes_;  ///< of each call: free nodes are to be there until the solver returns
+  const double tolerance_distance_;
+  Report& report_;
 };
+
+/// One of the library's solvers, with its problem: answers a query, and asks the query's advisors.
+using SolveFunction = std::function<void(const engine::Query& query, engine::Answer& answer)>;
+
+/// Answers the query with stage 2, if there is something for it to look at. The answer has the same bits as without it.
+/// If the stage has taken something out, only an answer that is free without ignored pairs stands. Any other is found
+/// again without it. A query with a work budget is solved without it from the start, as a budget reaches farther with
+/// it.
+void solve(const VisibilityCuller& culler, const SolveFunction& solver, const engine::Problem& problem,
+           const engine::Query& query, engine::Answer& answer, Report& report);
 
 }  // namespace visibility
 }  // namespace fcl_artic

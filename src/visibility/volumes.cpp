@@ -141,48 +141,37 @@ Volume BodyPieces::volumeOf(const Piece& piece, Batch& batch) const {
   return volume;
 }
 
-bool BodyPieces::add(const Bounds* parts, std::uint32_t& lanes, double least, double cluster, std::int32_t window,
-                     std::int32_t pair, Collection& to, Bounds& reach) const {
-  Batch& batch = to.batch;
+bool BodyPieces::collect(std::int32_t root, const SweptParts& swept, std::size_t most, std::uint32_t& lanes,
+                         Bounds& reach, Batch& batch) const {
   if (!(tree_.nodes[0].radius < engine::kUnbounded)) return false;
   const auto met = [&](const Bounds& bounds, std::uint32_t asked) {
     std::uint32_t mask = 0;
     for (int lane = 0; lane < 8; ++lane) {
-      if ((asked >> lane & 1) && parts[lane].meets(bounds)) mask |= 1u << lane;
+      if ((asked >> lane & 1) && swept.parts[lane].meets(bounds)) mask |= 1u << lane;
     }
     return mask;
   };
   struct Open {
     std::int32_t node;
     std::uint32_t lanes;
-    std::int32_t group;  ///< -1: above all clusters
   };
   Open stack[128];
   int open = 0;
-  stack[open++] = {0, lanes, -1};
+  stack[open++] = {root, lanes};
   std::uint32_t touched = 0;
   while (open) {
-    Open top = stack[--open];
+    const Open top = stack[--open];
     const Node& node = tree_.nodes[top.node];
-    const bool small = static_cast<double>(node.radius) < least;
-    const auto openCluster = [&] {
-      if (top.group >= 0) return;
-      top.group = to.nextGroup();
-      to.clusters.push_back({pair, top.node});
-    };
+    const bool small = static_cast<double>(node.radius) < swept.least;
     if (!node.isLeaf() && !small) {
       const std::uint32_t mask = met(boundsOf(node), top.lanes);
-      if (!mask) {
-        to.free.push_back({pair, top.node});
-        continue;
-      }
+      if (!mask) continue;
       if (open + 2 > 128) return false;
-      if (static_cast<double>(node.radius) < cluster) openCluster();
-      stack[open++] = {node.right(), mask, top.group};
-      stack[open++] = {node.left(), mask, top.group};
+      stack[open++] = {node.right(), mask};
+      stack[open++] = {node.left(), mask};
       continue;
     }
-    if (batch.objects.size() >= to.most) return false;
+    if (batch.objects.size() >= most) return false;
     const std::size_t points = batch.points.size();
     const Volume volume = small ? ballAround(node, batch) : volumeOf(tree_.pieces[node.piece()], batch);
     const Bounds bounds = visibility::boundsOf(batch.points.data() + points, volume.count, volume.radius);
@@ -190,15 +179,24 @@ bool BodyPieces::add(const Bounds* parts, std::uint32_t& lanes, double least, do
     if (mask) {
       touched |= mask;
       reach.join(bounds);
-      openCluster();
-      batch.objects.push_back({volume, window, top.group});
+      batch.objects.push_back({volume, swept.window, batch.num_groups});
     } else {
-      to.free.push_back({pair, top.node});
       batch.points.resize(points);
     }
   }
   lanes &= touched;
   return true;
+}
+
+bool BodyPieces::add(std::int32_t node, const SweptParts& swept, std::size_t most, std::uint32_t& lanes, Bounds& reach,
+                     Batch& batch) const {
+  const std::size_t objects = batch.objects.size(), points = batch.points.size();
+  const Bounds reached = reach;
+  if (collect(node, swept, most, lanes, reach, batch)) return true;
+  batch.objects.resize(objects);
+  batch.points.resize(points);
+  reach = reached;
+  return false;
 }
 
 }  // namespace visibility

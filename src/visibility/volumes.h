@@ -4,8 +4,8 @@
 // which stands still there.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "model/query.h"
 #include "visibility/batch.h"
@@ -36,19 +36,11 @@ Bounds boundsOf(const double* points, int count, double radius);
 Bounds boundsOf(const engine::SweptLink& link);
 Volume addVolume(const engine::SweptLink& link, Batch& batch);
 
-/// A subtree of a pair's still body. All that is drawn of it is one group.
-struct Cluster {
-  std::int32_t pair, node;
-};
-
-/// The place where the pieces of a query's still bodies are collected.
-struct Collection {
-  Batch& batch;
-  std::int32_t first_group;        ///< the query's, in the batch
-  std::size_t most;                ///< maximum number of objects in the batch
-  std::vector<Cluster>& clusters;  ///< of each group of the query
-  std::vector<Cluster>& free;      ///< proven free without being drawn
-  std::int32_t nextGroup() const { return first_group + static_cast<std::int32_t>(clusters.size()); }
+/// Bounds of the volumes that a link sweeps, and how they are drawn.
+struct SweptParts {
+  Bounds parts[8];      ///< bounds over each eighth of the motion
+  double least = 0;     ///< m; a node smaller than this is added as the ball around its box
+  std::int32_t window;  ///< of the batch
 };
 
 /// Pieces of a body that stands still, in the frame of the swept volumes.
@@ -57,18 +49,18 @@ class BodyPieces {
   /// @param at      where the tree stands in that frame.
   /// @param margin  that all of it is grown by, m.
   BodyPieces(const engine::TreeView& tree, const engine::Placement& at, double margin);
-  /// Adds the pieces whose bounds meet one of the parts: triangles and other convex pieces. A node smaller than
-  /// `least` (m) is added as the ball around its box, with all that is in it. Nodes as large as `cluster` (m) make
-  /// groups.
-  /// @param parts  bounds of what is swept in each of the eight parts of the motion.
+  /// Adds those pieces below a node whose bounds meet one of the parts, as objects of the batch's next group.
+  /// @param most  the number of objects that the batch may come to.
   /// @param[in,out] lanes  parts to look at; those that no piece meets are taken out.
   /// @param[in,out] reach  joined with the bounds of what is added.
-  /// @return false if there were more than to.most objects, the tree is too deep, or the body is unbounded: nothing is
-  /// known then, and `lanes` is unchanged.
-  bool add(const Bounds* parts, std::uint32_t& lanes, double least, double cluster, std::int32_t window,
-           std::int32_t pair, Collection& to, Bounds& reach) const;
+  /// @return false if there are more, the tree is too deep, or the body is unbounded: then nothing is known, and
+  /// nothing is added.
+  bool add(std::int32_t node, const SweptParts& swept, std::size_t most, std::uint32_t& lanes, Bounds& reach,
+           Batch& batch) const;
 
  private:
+  bool collect(std::int32_t node, const SweptParts& swept, std::size_t most, std::uint32_t& lanes, Bounds& reach,
+               Batch& batch) const;
   Bounds boundsOf(const engine::Node& node) const;
   void place(const double* p, double* x) const;
   Volume volumeOf(const engine::Piece& piece, Batch& batch) const;

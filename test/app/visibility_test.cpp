@@ -43,12 +43,13 @@ TEST_F(VisibilityProgram, JsonTellsWhetherItWasUsedAndByWhom) {
   EXPECT_TRUE(Json::parse(far.out).at("visibility").at("executor").is_null());
 }
 
-TEST_F(VisibilityProgram, AtOnceSolvesOnce) {
-  const Json off = check("", true), at_once = check("--visibility at-once", true);
-  EXPECT_EQ(at_once.at("visibility").at("mode"), "at-once");
-  EXPECT_EQ(at_once.at("visibility").at("repeated"), 0);
-  EXPECT_LE(at_once.at("t_lower"), off.at("t_upper"));
-  EXPECT_LE(off.at("t_lower"), at_once.at("t_upper"));
+TEST_F(VisibilityProgram, ModesThatAreGoneAreErrorsThatSayWhatToUse) {
+  for (const std::string mode : {"automatic", "at-once"}) {
+    const Outcome run = this->run("check " + armAndBall() + " --from 0,0 --to 1,0 --visibility " + mode);
+    EXPECT_EQ(run.status, 2) << run.out;
+    EXPECT_NE(run.err.find("the mode " + mode + " is gone: with on and off answers are the same"), std::string::npos)
+        << run.err;
+  }
 }
 
 TEST_F(VisibilityProgram, TextHasALine) {
@@ -96,7 +97,7 @@ TEST_F(VisibilityProgram, LinesHaveItEach) {
                                            "\n"
                                            R"({"from": [-1, 0], "to": [-0.9, 0]})"
                                            "\n");
-  const Outcome run = this->run("check --visibility at-once " + armAndBall() + " --lines " + lines);
+  const Outcome run = this->run("check --visibility on " + armAndBall() + " --lines " + lines);
   std::istringstream answers(run.out);
   std::string first, second;
   std::getline(answers, first);
@@ -109,15 +110,12 @@ TEST_F(VisibilityProgram, LinesHaveItEach) {
 
 TEST_F(VisibilityProgram, BenchRobotTellsWhatItDid) {
   const std::string bench = "bench robot --json --no-fcl --motions 20 --passes 1 --angle 20 " + armAndBall();
-  for (const std::string mode : {"on", "automatic", "at-once"}) {
-    const Outcome run = this->run(bench + " --visibility " + mode);
-    ASSERT_EQ(run.status, 0) << run.err;
-    const Json told = Json::parse(run.out).at("visibility");
-    EXPECT_EQ(told.at("mode"), mode);
-    if (mode == "automatic") continue;
-    EXPECT_EQ(told.at("executor"), "cpu");
-    EXPECT_GT(told.at("pairs"), 0);
-  }
+  const Outcome run = this->run(bench + " --visibility on");
+  ASSERT_EQ(run.status, 0) << run.err;
+  const Json told = Json::parse(run.out).at("visibility");
+  EXPECT_EQ(told.at("mode"), "on");
+  EXPECT_EQ(told.at("executor"), "cpu");
+  EXPECT_GT(told.at("pairs"), 0);
   const Outcome off = this->run(bench);
   EXPECT_TRUE(Json::parse(off.out).at("visibility").is_null()) << off.err;
 }

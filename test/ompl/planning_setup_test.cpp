@@ -135,7 +135,7 @@ TEST_F(PlanningSetupTest, CullingByVisibilityIsDoneByTheCullerGiven) {
                                                             ++made;
                                                             throw std::runtime_error("no driver");
                                                           });
-  for (const VisibilityMode mode : {VisibilityMode::off, VisibilityMode::on, VisibilityMode::atOnce}) {
+  for (const VisibilityMode mode : {VisibilityMode::off, VisibilityMode::on}) {
     made = 0;
     options.request.visibility = mode;
     const PlanningSetup setup = setUpPlanning(urdf_, srdf_, scene_, "chain", options);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <functional>
 #include <map>
 #include <random>
 #include <set>
@@ -99,52 +98,6 @@ TEST(ObbTree, AxesOfSliversAreOrthonormal) {
     }
   }
   EXPECT_LE(worst, 0x1p-21);
-}
-
-/// Some nodes of the body's own tree, and which of the tree's are within them, against each triangle's piece.
-TEST(ObbTree, NodesWithinOthersAreThoseWithAllTheirTrianglesThere) {
-  std::mt19937_64 random(1);
-  std::size_t within = 0, partly = 0;
-  for (const campaign::GeometryPtr& geometry : campaign::MeshLibrary::instance().all()) {
-    const auto shape = fcl_artic::readGeometry(*geometry->fclGeometry());
-    const fcl_artic::engine::TreeView& body = shape->view();
-    const ObbTree& tree = *shape->obbTree();
-    for (const double share : {0.0, 0.02, 0.3}) {
-      std::vector<std::uint64_t> given(static_cast<std::size_t>(body.num_nodes) / 64 + 1, 0);
-      const auto isGiven = [&](int n) { return (given[static_cast<std::size_t>(n) / 64] >> n % 64 & 1) != 0; };
-      for (int n = 0; n < body.num_nodes; ++n) {
-        if (n != 1 && static_cast<double>(random() % 1000) < 1000 * share) {
-          given[static_cast<std::size_t>(n) / 64] |= std::uint64_t{1} << n % 64;
-        }
-      }
-      std::set<int> pieces;
-      const std::function<void(int, bool)> visit = [&](int n, bool all) {
-        all = all || isGiven(n);
-        if (!body.nodes[n].isLeaf()) {
-          visit(body.nodes[n].left(), all);
-          visit(body.nodes[n].right(), all);
-        } else if (all) {
-          pieces.insert(body.nodes[n].piece());
-        }
-      };
-      visit(0, false);
-      std::vector<std::uint64_t> found;
-      tree.nodesWithin(body, given.data(), found);
-      const std::function<int(int)> missing = [&](int n) {  // triangles below whose pieces are not given
-        const ObbNode& node = tree.nodes()[static_cast<std::size_t>(n)];
-        const int here = node.isLeaf()
-                             ? !pieces.count(tree.triangles()[static_cast<std::size_t>(node.triangle())].piece)
-                             : missing(node.child) + missing(node.child + 1);
-        EXPECT_EQ((found[static_cast<std::size_t>(n) / 64] >> n % 64 & 1) != 0, here == 0) << n;
-        within += here == 0 && !node.isLeaf();
-        partly += here != 0;
-        return here;
-      };
-      missing(0);
-    }
-  }
-  EXPECT_GT(within, 100u);
-  EXPECT_GT(partly, 1000u);
 }
 
 TEST(ObbTree, EveryFeatureHasOneOwner) {

@@ -88,58 +88,6 @@ TEST(RedonVisibility, VolumesHoldTheLink) {
   EXPECT_LT(least_room, 3e-4) << "not just large";
 }
 
-/// A wall of many triangles in one mesh, and a link that is near one corner of it. The rest of the wall is not looked
-/// at, and the answer is that without the stage.
-TEST(RedonVisibility, NodesThatAreFreeAreNotTraversed) {
-  std::vector<Vector3d> corners;
-  for (int i = 0; i < 40; ++i) {
-    for (int j = 0; j < 40; ++j) {
-      // In zigzag, so that the wall's boxes are thick.
-      const auto at = [&](int x, int y) { return Vector3d(0.1 * x, 0.1 * y, x % 2 ? 0.15 : 0.0); };
-      corners.insert(corners.end(), {at(i, j), at(i + 1, j), at(i, j + 1)});
-    }
-  }
-  fcl::CollisionObjectd wall(meshOf(corners));
-  const std::vector<Vector3d> needle{{-1e-2, 0, 0}, {1e-2, 0, 0}, {0, 0, 0.6}};
-  fcl::CollisionObjectd link(meshOf(needle));
-  auto tree = std::make_shared<KinematicTree>("slide");
-  Joint joint;
-  joint.name = "joint";
-  joint.type = JointType::prismatic;
-  joint.parent = "base";
-  joint.child = "link";
-  joint.axis = Vector3d::UnitY();
-  joint.origin.translation() = Vector3d(0.2, 0.32, 0.0155);  // in a furrow, hardly above it
-  tree->addLink("base");
-  tree->addLink("link");
-  tree->addJoint(joint);
-  ArticulatedCollisionManager manager(tree);
-  manager.bind("link", &link);
-  manager.registerObject(&wall);
-  manager.setup();
-  int cut = 0;
-  for (const double way : {0.05, 0.4, 1.0}) {
-    Eigen::VectorXd q0(1), q1(1);
-    q0 << 0;
-    q1 << way;
-    const JointMotion motion = JointMotion::linear(*tree, q0, q1);
-    CertifiedRequest request;
-    request.method = Method::redon2004;
-    CertifiedResult off, on;
-    manager.continuousCollide(motion, request, off);
-    request.visibility = VisibilityMode::on;
-    manager.continuousCollide(motion, request, on);
-    ASSERT_TRUE(off.isFree());
-    ASSERT_TRUE(on.isFree());
-    std::cout << way << ": " << on.statistics.visibility.nodes << " nodes free; box tests "
-              << off.statistics.redon.box_tests << " without the stage, " << on.statistics.redon.box_tests
-              << " with it\n";
-    cut += on.statistics.visibility.culled == 0 && on.statistics.visibility.nodes > 0 &&
-           on.statistics.redon.box_tests < off.statistics.redon.box_tests;
-  }
-  EXPECT_GE(cut, 1);
-}
-
 TEST(RedonVisibility, PartsOfTimeAreThoseThatOverlap) {
   std::mt19937_64 random(2);
   for (int level = 0; level <= 6; ++level) {

@@ -302,17 +302,6 @@ TEST(Traversal, PutsOffWhatIsLaterThanASuspicion) {
   EXPECT_EQ(looked_at & put_off, 0u);
 }
 
-TEST(Traversal, AsksNothingOfNodesThatAreProvenFree) {
-  TwoBalls world;
-  world.asPair().begin();
-  const Seen seen = world.motions.of(TwoBalls::kPair, world.task.whole);
-  const std::uint64_t none = 0, root = 1;
-  world.traversal.knowFreeNodes(TwoBalls::kPair, &root);
-  world.traversal.knowFreeNodes(TwoBalls::kPair, &none);  // another advisor, which knows nothing
-  world.traversal.descend(seen, {TwoBalls::kPair, 0, 0, kAllLanes}, Aim::leaves, world.open);
-  EXPECT_EQ(world.open.size(), 0);
-}
-
 /// Balls of these radii in the middle of the two bodies' trees, each in a closed part that reaches as far as its body.
 struct BallsInside {
   BallsInside(TwoBalls& world, double radius_a, double radius_b) {
@@ -540,13 +529,13 @@ TEST(StageOne, TakesWhatAdvisorsClear) {
   world.begin();
   world.stage_one.cull(world.open);
   ASSERT_NE(world.stage_one.direction(world.open[0]), nullptr);
-  world.stage_one.refine(world.traversal, world.open);
+  world.stage_one.refine(world.open);
   EXPECT_EQ(asked.pairs, 1);
   ASSERT_EQ(world.open.size(), 1);
   EXPECT_EQ(world.open[0].mask, 0b1000u);
   EXPECT_NE(world.stage_one.direction(world.open[0]), nullptr);
   asked.keep = 0;
-  world.stage_one.refine(world.traversal, world.open);
+  world.stage_one.refine(world.open);
   EXPECT_EQ(world.open.size(), 0);
 }
 
@@ -579,10 +568,10 @@ TEST(StageOne, OffersPairsThatBothMoveWhereOneStandsStill) {
   world.query.ask(advisor);
   world.begin();
   world.stage_one.cull(world.open);
-  world.stage_one.refine(world.traversal, world.open);
+  world.stage_one.refine(world.open);
   EXPECT_EQ(asked, 0) << "free bodies";
   world.bodies[1].tree_lss = ball;
-  world.stage_one.refine(world.traversal, world.open);
+  world.stage_one.refine(world.open);
   EXPECT_EQ(asked, 1);
   ASSERT_EQ(world.open.size(), 1);
   EXPECT_EQ(world.open[0].mask, 0b10u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole queries with the stage off, on and automatic: the same bits.
+// Whole queries with the stage off and on: the same bits.
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "visibility/cpu_executor.h"
+#include "recorder.h"
 #include "with_and_without.h"
 #ifdef FCL_ARTIC_HAS_OFFSCREEN
 #include "fcl_artic/visibility/offscreen.h"
@@ -40,33 +40,34 @@ campaign::Tally compare(std::uint64_t n, const std::shared_ptr<const fcl_artic::
   return all;
 }
 
-fcl_artic::VisibilityOptions optionsOf(fcl_artic::VisibilityRule rule, int resolution) {
-  fcl_artic::VisibilityOptions options;
-  options.rule = rule;
-  options.resolution = resolution;
-  return options;
-}
-const auto kIntervals = fcl_artic::VisibilityRule::intervals, kOcclusion = fcl_artic::VisibilityRule::occlusion;
-
 TEST(VisibilityQueries, SameAnswersWithCpu) {
   const campaign::Tally all = compare(queries(), nullptr);
-  EXPECT_GT(all["nodes"], queries() / 20);
   EXPECT_GT(all["repeated"], queries() / 100);
-}
-
-TEST(VisibilityQueries, SameAnswersWithTheOcclusionRule) {
-  compare(queries() / 4, std::make_shared<fcl_artic::VisibilityCuller>(optionsOf(kOcclusion, 16)));
 }
 
 #ifdef FCL_ARTIC_HAS_OFFSCREEN
 TEST(VisibilityQueries, SameAnswersWithOsmesaAndEgl) {
   using fcl_artic::OffscreenBackend;
-  for (const auto backend : {OffscreenBackend::osmesa, OffscreenBackend::egl}) {
-    for (const auto rule : {kIntervals, kOcclusion})
-      compare(queries() / 8, fcl_artic::makeOffscreenCuller(backend, optionsOf(rule, 32)));
-  }
+  for (const auto backend : {OffscreenBackend::osmesa, OffscreenBackend::egl})
+    compare(queries() / 2, fcl_artic::makeOffscreenCuller(backend));
 }
 #endif
+
+/// Nothing checks what the stage proves of free motions: what it culls wrongly is missed, and the test above sees it.
+TEST(VisibilityQueries, WrongCullsAreSeen) {
+  campaign::Options o;
+  o.cases = 320;
+  o.seed = 7;
+  o.threads = 1;
+  o.folder.clear();
+  const auto careless = fcl_artic::test::changedBy(nullptr, [](std::vector<std::uint8_t>& may) {
+    for (std::size_t group = 0; group < may.size(); group += 2) may[group] = 0;
+  });
+  const std::uint64_t different =
+      run(campaignOf(fcl_artic::test::withAndWithoutStage(careless)), o).total.faults("different");
+  std::cout << "half of the groups culled wrongly: " << different << " of " << o.cases << " answers differ\n";
+  EXPECT_GT(different, 5u);
+}
 
 /// A ball on a turning arm amid a wall of little balls: many pairs, each meeting for a short while.
 class ArmAmidBalls : public testing::Test {
@@ -168,84 +169,50 @@ TEST_F(ArmAmidBalls, MeshAllAroundIsLeftOutUntilOneOfItsCubesIsInTheWay) {
   EXPECT_EQ(result_.statistics.visibility.culled, 0u);
 }
 
-/// Some of its cubes lie in the line swept sphere around the arm and beside the arm: the pair stays, most nodes go, and
-/// the solver looks at those left. Verdicts of both kinds are those without the stage, to the last bit.
+/// Slivers run past the arm at an angle: their boxes meet its line swept sphere, they do not. One more lies in the
+/// sphere, and in the arm or not: the pair stays, the other nodes go, and the solver looks at what is left.
 TEST_F(ArmAmidBalls, NodesOfAMeshAreCulled) {
-  std::vector<Eigen::Vector3d> centers;
-  for (int i = 0; i < 60; ++i) centers.push_back(around(0.1 * i, 0.4 + 0.02 * (i % 13), 0.095 + 0.01 * (i % 7)));
-  add(cubes(centers), Eigen::Vector3d::Zero());
-  manager_->setup();
-  std::uint64_t contacts = 0, nodes = 0, less = 0, different = 0;
-  CertifiedResult off;
-  for (int i = 0; i < 300; ++i) {
-    const double from = 0.02 * i;
+  for (const double z : {0.06, 0.04}) {  // the arm reaches up to 0.05, its sphere to 0.07
+    auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
+    mesh->beginModel();
+    for (int i = 0; i < 100; ++i) {  // more than twice as long as the arm: a large body
+      const Eigen::Vector3d at(0.03 * i - 1, 0.09, 0.09), along(0, 0.08, -0.08);
+      mesh->addTriangle(at - along, at + along, at + Eigen::Vector3d(0.004, 0, 0));
+    }
+    mesh->addTriangle({0.5, 0, z}, {0.51, 0, z}, {0.5, 0.01, z});
+    mesh->endModel();
+    manager_->clear();
+    manager_->bind("arm", arm_.get(), Eigen::Isometry3d(Eigen::Translation3d(0.5, 0, 0)));
+    add(mesh, Eigen::Vector3d::Zero());
+    manager_->setup();
+    CertifiedResult off;
     request_.visibility = VisibilityMode::off;
-    manager_->continuousCollide(motion(from, from + 0.1), request_, off);
-    for (const VisibilityMode mode : {VisibilityMode::on, VisibilityMode::automatic}) {
-      request_.visibility = mode;
-      manager_->continuousCollide(motion(from, from + 0.1), request_, result_);
-      different += !fcl_artic::test::sameBits(off, result_);
-      if (mode != VisibilityMode::on || result_.statistics.visibility.culled) continue;
-      const bool contact = off.status == fcl_artic::Status::contact;
-      contacts += contact;
-      ASSERT_EQ(result_.statistics.visibility.repeated, contact && result_.statistics.visibility.nodes) << i;
-      if (contact) continue;
-      nodes += result_.statistics.visibility.nodes;
-      ASSERT_LE(result_.statistics.node_tests, off.statistics.node_tests) << i;
-      less += result_.statistics.node_tests < off.statistics.node_tests;
+    manager_->continuousCollide(motion(0, 0.01), request_, off);
+    request_.visibility = VisibilityMode::on;
+    manager_->continuousCollide(motion(0, 0.01), request_, result_);
+    EXPECT_TRUE(fcl_artic::test::sameBits(off, result_));
+    EXPECT_EQ(off.status, z > 0.05 ? fcl_artic::Status::free : fcl_artic::Status::contact);
+    const auto& s = result_.statistics;
+    EXPECT_EQ(s.visibility.culled, 0u);
+    EXPECT_GT(s.visibility.nodes, 0u) << s.visibility.pairs << ' ' << s.visibility.pieces << ' '
+                                      << s.pairs_after_culling;
+    EXPECT_EQ(s.visibility.repeated, z > 0.05 ? 0u : 1u);
+    if (z > 0.05) {
+      EXPECT_LT(s.node_tests, off.statistics.node_tests);
     }
   }
-  std::cout << contacts << " contacts, " << nodes << " nodes, less work in " << less << "\n";
-  EXPECT_EQ(different, 0u);
-  EXPECT_GT(contacts, 20u);
-  EXPECT_GT(nodes, 300u);
-  EXPECT_GT(less, 20u);
 }
-
-/// A query that its caller ends while the stage takes part is not begun again without it.
-TEST_F(ArmAmidBalls, EndedIsEnded) {
-  std::vector<Eigen::Vector3d> centers;
-  for (int i = 0; i < 3000; ++i) centers.push_back(around(0.002 * i, 0.4 + 0.02 * (i % 13), 0.095 + 0.01 * (i % 7)));
-  add(cubes(centers), Eigen::Vector3d::Zero());
-  manager_->setup();
-  request_.visibility = VisibilityMode::on;
-  request_.ignore_initial_contact = true;  // takes long enough to be ended midway
-  int repeated = 0;
-  for (int i = 0; i < 60; ++i) {
-    int told = 0;
-    request_.progress = [&](double) { return ++told > 0; };
-    manager_->continuousCollide(motion(0.1 * i, 0.1 * i + 0.7), request_, result_);
-    if (!result_.statistics.visibility.repeated || told < 2) continue;
-    ++repeated;
-    told = 0;
-    request_.progress = [&](double) { return ++told > 1; };
-    manager_->continuousCollide(motion(0.1 * i, 0.1 * i + 0.7), request_, result_);
-    EXPECT_EQ(result_.status, fcl_artic::Status::undecided);
-    EXPECT_EQ(told, 1) << "asked again after it had said no";
-    EXPECT_EQ(result_.statistics.visibility.repeated, 0u);
-  }
-  std::cout << repeated << " queries that were ended\n";
-  EXPECT_GT(repeated, 0);
-}
-
-/// The executor cpu, but that it takes one group of a query, or all of them, for free.
-struct Liar : fcl_artic::visibility::Executor {
-  explicit Liar(const int& group) : lie(group) {}
-  void run(const fcl_artic::visibility::Batch& batch, std::vector<std::uint8_t>& may) override {
-    cpu.run(batch, may);
-    for (std::size_t i = 0; i < may.size(); ++i) {
-      if (lie == batch.objects[i].group || lie == kAll) may[i] = 0;
-    }
-  }
-  static constexpr int kNone = -1, kAll = -2;
-  const int& lie;
-  fcl_artic::visibility::CpuExecutor cpu;
-};
 
 /// Whatever the stage takes out of a query with contact, the contact reported is the one without it; two balls as two
 /// pairs, two rows of cubes as nodes of one.
 TEST_F(ArmAmidBalls, WrongCullsChangeNoContact) {
-  int lie = Liar::kNone;
+  constexpr int kAll = -1, kNone = 2;
+  int lie = kNone;  // the group that is taken for free
+  manager_->setVisibility(fcl_artic::test::changedBy(nullptr, [&lie](std::vector<std::uint8_t>& may) {
+    for (std::size_t group = 0; group < may.size(); ++group) {
+      if (lie == kAll || lie == static_cast<int>(group)) may[group] = 0;
+    }
+  }));
   for (const bool one_mesh : {false, true}) {
     manager_->clear();
     manager_->bind("arm", arm_.get(), Eigen::Isometry3d(Eigen::Translation3d(0.5, 0, 0)));
@@ -261,41 +228,23 @@ TEST_F(ArmAmidBalls, WrongCullsChangeNoContact) {
       add(std::make_shared<fcl::Sphered>(0.05), late);
     }
     manager_->setup();
-    lie = Liar::kNone;
-    manager_->setVisibility(std::make_shared<fcl_artic::VisibilityCuller>(
-        fcl_artic::VisibilityOptions(), "liar", [&lie] { return std::make_unique<Liar>(lie); }));
     request_.visibility = VisibilityMode::off;
     CertifiedResult off;
     manager_->continuousCollide(motion(0, 2), request_, off);
     ASSERT_EQ(off.status, fcl_artic::Status::contact);
     request_.visibility = VisibilityMode::on;
-    manager_->continuousCollide(motion(0, 2), request_, result_);  // made while it tells the truth
-    EXPECT_TRUE(fcl_artic::test::sameBits(off, result_));
-    EXPECT_EQ(result_.statistics.visibility_executor, "liar");
-    for (lie = 0; lie < 2; ++lie) {
+    for (lie = 0; lie <= kNone; ++lie) {
       manager_->continuousCollide(motion(0, 2), request_, result_);
       EXPECT_TRUE(fcl_artic::test::sameBits(off, result_)) << one_mesh << lie;
+      EXPECT_EQ(result_.statistics.visibility_executor, "changed");
+      if (lie == kNone) continue;
       EXPECT_EQ(result_.statistics.visibility.culled, one_mesh ? 0u : 1u);
       EXPECT_EQ(result_.statistics.visibility.repeated, 1u);
     }
-    lie = Liar::kAll;
+    lie = kAll;
     manager_->continuousCollide(motion(0, 2), request_, result_);
     EXPECT_EQ(result_.status, fcl_artic::Status::free) << "what is free is the stage's own proof";
   }
-}
-
-/// What fits into a budget must not depend on the stage.
-TEST_F(ArmAmidBalls, OffWithAWorkBudget) {
-  for (int i = 0; i < 30; ++i) add(std::make_shared<fcl::Sphered>(0.05), around(0.05 * i, 0.7, 0.12));
-  manager_->setup();
-  request_.work_budget = 3;
-  CertifiedResult off;
-  manager_->continuousCollide(motion(0, 1.2), request_, off);
-  ASSERT_EQ(off.status, fcl_artic::Status::undecided);
-  request_.visibility = VisibilityMode::on;
-  manager_->continuousCollide(motion(0, 1.2), request_, result_);
-  EXPECT_TRUE(fcl_artic::test::sameBits(off, result_));
-  EXPECT_EQ(result_.statistics.visibility.pairs, 0u);
 }
 
 /// A margin brings a ball near that is culled without.
@@ -309,39 +258,6 @@ TEST_F(ArmAmidBalls, MarginCounts) {
   request_.margin = 0.05;
   manager_->continuousCollide(motion(-0.5, 0.5), request_, result_);
   EXPECT_EQ(result_.status, fcl_artic::Status::free);
-}
-
-/// Trials happen, take their 1 %, and change no answer.
-TEST_F(ArmAmidBalls, AutomaticTriesWithinItsShare) {
-  for (int i = 0; i < 200; ++i) {
-    const double a = 0.7 + 0.8 * std::fmod(0.618 * i, 1), r = 0.2 + 0.8 * std::fmod(0.755 * i, 1);
-    add(std::make_shared<fcl::Sphered>(0.03), {r * std::cos(a), r * std::sin(a), 0.1 * std::fmod(0.57 * i, 1) + 0.07});
-  }
-  manager_->setup();
-  std::uint64_t trials = 0, different = 0;
-  double all_us = 0, visibility_us = 0;
-  CertifiedResult off;
-  for (int i = 0; i < 40000 && all_us < 4e5; ++i) {
-    const double from = 0.5 * std::fmod(0.618 * i, 1);
-    request_.visibility = VisibilityMode::off;
-    manager_->continuousCollide(motion(from, from + 0.5), request_, off);
-    request_.visibility = VisibilityMode::automatic;
-    request_.measure_times = true;
-    manager_->continuousCollide(motion(from, from + 0.5), request_, result_);
-    different += !fcl_artic::test::sameBits(off, result_);
-    trials += result_.statistics.visibility.trials;
-    all_us += result_.statistics.total_us;
-    if (result_.statistics.visibility.trials) visibility_us += result_.statistics.visibility.us;
-  }
-  std::cout << trials << " trials in " << all_us << " us, the stage in them " << visibility_us << " us\n";
-  EXPECT_EQ(different, 0u);
-  EXPECT_GT(trials, 1u);
-  EXPECT_LT(visibility_us, 0.02 * all_us + 20000);  // and a neighbour's interruption
-  request_.work_budget = 1000000;                   // what fits in would depend on the clock
-  for (int i = 0; i < 100; ++i) {
-    manager_->continuousCollide(motion(0, 0.5), request_, result_);
-    EXPECT_EQ(result_.statistics.visibility.pairs, 0u);
-  }
 }
 
 TEST_F(ArmAmidBalls, FourThreadsGetTheSameAnswers) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,20 +15,41 @@
 namespace fcl_artic {
 namespace test {
 
-/// The executor cpu, with what it was asked last.
-struct Recorder : visibility::Executor {
-  explicit Recorder(visibility::Batch& kept) : last(kept) {}
+/// The executor cpu, but that `before` and `after` may change the task and the answer.
+struct Changed : visibility::Executor {
   void run(const visibility::Batch& batch, std::vector<std::uint8_t>& may) override {
-    last = batch;
-    cpu.run(batch, may);
+    visibility::Batch changed = batch;
+    if (before) before(changed);
+    cpu.run(changed, may);
+    if (after) after(may);
   }
-  visibility::Batch& last;
+  std::function<void(visibility::Batch& batch)> before;
+  std::function<void(std::vector<std::uint8_t>& may)> after;
   visibility::CpuExecutor cpu;
 };
-inline std::shared_ptr<const VisibilityCuller> recordTo(visibility::Batch& batch,
-                                                        const VisibilityOptions& options = {}) {
-  return std::make_shared<VisibilityCuller>(options, "recorder",
-                                            [&batch] { return std::make_unique<Recorder>(batch); });
+/// A culler with that executor, whose self-test is done: nothing of it reaches the functions.
+inline std::shared_ptr<const VisibilityCuller> changedBy(
+    std::function<void(visibility::Batch& batch)> before,
+    std::function<void(std::vector<std::uint8_t>& may)> after = nullptr) {
+  auto tested = std::make_shared<bool>(false);
+  const auto culler = std::make_shared<VisibilityCuller>(VisibilityOptions(), "changed", [=] {
+    auto executor = std::make_unique<Changed>();
+    if (before)
+      executor->before = [=](visibility::Batch& batch) {
+        if (*tested) before(batch);
+      };
+    if (after)
+      executor->after = [=](std::vector<std::uint8_t>& may) {
+        if (*tested) after(may);
+      };
+    return executor;
+  });
+  (void)culler->executor();
+  *tested = true;
+  return culler;
+}
+inline std::shared_ptr<const VisibilityCuller> recordTo(visibility::Batch& last) {
+  return changedBy([&last](visibility::Batch& batch) { last = batch; });
 }
 
 /// How far a volume reaches along n.

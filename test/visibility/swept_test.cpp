@@ -44,7 +44,7 @@ class Swept : public testing::Test {
     request.visibility = VisibilityMode::on;
     request.margin = margin;
     manager.continuousCollide(motion, request, result_);
-    ASSERT_EQ(result_.statistics.visibility_executor, "recorder");
+    ASSERT_EQ(result_.statistics.visibility_executor, "changed");
   }
   std::shared_ptr<fcl::Capsuled> capsule_;
   std::shared_ptr<const KinematicTree> tree_;

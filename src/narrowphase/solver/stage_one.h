@@ -51,8 +51,8 @@ class StageOne : PartOfSolver {
 
   /// Stage 1: appends to `open` the pairs whose swept bounds meet, with the lanes in which they meet.
   void cull(Buffer<Entry>& open);
-  /// Stage 2: removes the pairs and lanes from `open` that advisors prove free, and tells `traversal` which nodes are.
-  void refine(Traversal& traversal, Buffer<Entry>& open);
+  /// Stage 2: removes the pairs, nodes and lanes from `open` that advisors prove free.
+  void refine(Buffer<Entry>& open);
   /// From A to B in A's tree frame, in the middles of the lanes, of any length; null: not known.
   const Vec3Lanes* direction(const Entry& e) const { return e.direction < 0 ? nullptr : &directions_[e.direction]; }
 
@@ -80,7 +80,7 @@ class StageOne : PartOfSolver {
   void sweptInWorld(int mover, engine::SweptLink* parts) const;
   void sweepInPartner(PairId pair, const double* lss, SweptLss& s);
   void sweptInPartner(PairId pair, const double* lss, engine::SweptLink* parts);
-  void takeAdvice(const engine::Advisor& advisor, Traversal& traversal, Buffer<Entry>& open);
+  void takeAdvice(const engine::Advisor& advisor, Buffer<Entry>& open);
   bool looksForAny() const { return query().any && !query().every_pair && contacts_.watching(); }
 
   SweptFrames& frames_;
@@ -442,55 +442,48 @@ inline void StageOne::sweptInPartner(PairId pair, const double* lss, engine::Swe
   for (int lane = 0; lane < kLanes; ++lane) sweptOver(lane, s.end, s.radius, parts[lane]);
 }
 
-inline void StageOne::refine(Traversal& traversal, Buffer<Entry>& open) {
+inline void StageOne::refine(Buffer<Entry>& open) {
   for (int n = 0; n < query().num_advisors && open.size(); ++n) {
-    if (query().advisors[n].clear) takeAdvice(query().advisors[n], traversal, open);
+    if (query().advisors[n].clear) takeAdvice(query().advisors[n], open);
   }
 }
 
-inline void StageOne::takeAdvice(const engine::Advisor& advisor, Traversal& traversal, Buffer<Entry>& open) {
+inline void StageOne::takeAdvice(const engine::Advisor& advisor, Buffer<Entry>& open) {
   static constexpr engine::Placement kWhereItStands = {};
   candidates_.clear();
   swept_links_.resize(kLanes * (problem().num_movers + open.size()));
   int previous = -1, num_swept = problem().num_movers;
-  const auto lanesOf = [&](int i) {
-    unsigned lanes = 0;
-    for (const int end = endOfPair(open, i); i < end; ++i) lanes |= open[i].mask;
-    return lanes;
-  };
-  for (int i = 0; i < open.size(); i = endOfPair(open, i)) {
+  PairId last = engine::kNoPair;
+  for (int i = 0; i < open.size(); ++i) {
     const Entry& e = open[i];
-    const unsigned lanes = lanesOf(i);
     const double margin = query().margins.of(e.pair);
     if (problem().isScenePair(e.pair)) {
       const int mover = problem().moverOf(e.pair), obstacle = problem().obstacles[problem().obstacleOf(e.pair)];
       if (mover != previous) sweptInWorld(previous = mover, swept_links_.data() + kLanes * mover);
       const double apart = margin + strays_.ofObstacle(obstacle);
-      candidates_.push({e.pair, mover, obstacle, &body(obstacle).placement, lanes, apart});
+      candidates_.push({e.pair, e.a, mover, obstacle, &body(obstacle).placement, e.mask, apart});
       continue;
     }
     const PairParts parts = problem().parts(e.pair);
     if (!body(parts.b).tree_lss) continue;
-    sweptInPartner(e.pair, body(parts.b).tree_lss, swept_links_.data() + kLanes * num_swept);
-    candidates_.push({e.pair, num_swept++, parts.a, &kWhereItStands, lanes, margin});
+    if (e.pair != last) {
+      last = e.pair;
+      sweptInPartner(e.pair, body(parts.b).tree_lss, swept_links_.data() + kLanes * num_swept++);
+    }
+    candidates_.push({e.pair, e.a, num_swept - 1, parts.a, &kWhereItStands, e.mask, margin});
   }
   const int asked = candidates_.size();
   if (!asked) return;
   advisor.clear(advisor.self, problem(), swept_links_.data(), candidates_.data(), asked);
   int kept = 0, next = 0;
-  for (int i = 0; i < open.size();) {
-    unsigned left = kAllLanes;
-    if (next < asked && candidates_[next].pair == open[i].pair) {  // it may clear parts, nothing else
-      const engine::CullCandidate& answer = candidates_[next++];
-      FCL_ARTIC_ASSERT(!(answer.lanes & ~lanesOf(i)));
-      left = answer.lanes;
-      if (left && answer.free_nodes) traversal.knowFreeNodes(answer.pair, answer.free_nodes);
+  for (int i = 0; i < open.size(); ++i) {
+    Entry e = open[i];
+    if (next < asked && candidates_[next].pair == e.pair && candidates_[next].node == e.a) {
+      const unsigned left = candidates_[next++].lanes;
+      FCL_ARTIC_ASSERT(!(left & ~e.mask));  // it may clear parts, nothing else
+      e.mask = left;
     }
-    for (const int end = endOfPair(open, i); i < end; ++i) {
-      Entry e = open[i];
-      e.mask &= left;
-      if (e.mask) open[kept++] = e;
-    }
+    if (e.mask) open[kept++] = e;
   }
   FCL_ARTIC_ASSERT(next == asked);
   open.truncate(kept);

@@ -81,14 +81,11 @@ class Traversal : PartOfSolver {
   void begin() {
     for (Buffer<Entry>& stack : stack_)
       stack.clear();  // if the caller's progress threw, entries of the last query are still here
-    free_nodes_.clear();
     simplices_.begin();
     ranges_.forget();
     rods_throttle_.begin();
     roots_tested_ = -1;
   }
-  /// Nodes of a pair's still body, a bit each, that are proven free over the whole motion (engine::CullCandidate).
-  void knowFreeNodes(PairId pair, const std::uint64_t* nodes) { free_nodes_.push({pair, nodes}); }
   Simplex& simplexOf(const Entry& e) { return simplices_.of(e.pair, e.a); }
 
   /// Lanes of `mask` in which two nodes' boxes are not certainly apart.
@@ -120,7 +117,6 @@ class Traversal : PartOfSolver {
   unsigned apartAcrossRods(Seen seen, const Node& a, const Node& b, unsigned mask);
   unsigned leavesMayTouch(Seen seen, int piece_a, int piece_b, unsigned mask, bool suspect);
   bool isWithin(Seen seen);
-  bool isKnownFree(PairId pair, int node) const;
   /// Lanes of `mask` in which direction n, in the frame of side.still, certainly keeps the pieces apart.
   FCL_ARTIC_INLINE unsigned separated(const Side& side, const Piece& still, const Piece& moving, const Vec3& n,
                                       unsigned mask) {
@@ -138,11 +134,6 @@ class Traversal : PartOfSolver {
   HullSimplices simplices_;
   EffortThrottle rods_throttle_;
   SweptRanges ranges_;
-  struct FreeNodes {
-    PairId pair;
-    const std::uint64_t* nodes;
-  };
-  Buffer<FreeNodes> free_nodes_;
   std::int32_t roots_tested_ = -1;  ///< the batch's number
   Buffer<Entry> stack_[kLanes];     ///< node pairs to visit, by their earliest lane
   Buffer<Entry> undecided_;         ///< stays empty
@@ -352,15 +343,6 @@ inline unsigned Traversal::leavesMayTouch(Seen seen, int piece_a, int piece_b, u
   });
 }
 
-/// Whether an advisor has proven a node of a pair's still body free over the whole motion.
-inline bool Traversal::isKnownFree(PairId pair, int node) const {
-  bool free = false;
-  for (int i = 0; i < free_nodes_.size(); ++i) {
-    free |= free_nodes_[i].pair == pair && (free_nodes_[i].nodes[node / 64] >> node % 64 & 1);
-  }
-  return free;
-}
-
 inline void Traversal::descend(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open, int begin) {
   FCL_ARTIC_ASSERT(aim != Aim::freeLanes);
   traverse(seen, root, aim, open, begin);
@@ -404,7 +386,6 @@ inline unsigned Traversal::traverse(Seen seen, const Entry& root, Aim aim, Buffe
       if (!e.mask) continue;
     }
     if (horizon_.mustEnd()) break;
-    if (free_nodes_.size() && isKnownFree(e.pair, e.a)) continue;
     if (!e.isWhole() || roots_tested_ != seen->batchNumber()) e.mask = nodesMayTouch(seen, e.a, e.b, e.mask);
     if (e.mask && !e.isWhole()) e.mask = partsMayTouch(seen, e.a, e.b, e.mask);
     if (!e.mask) continue;
