@@ -210,8 +210,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   ///
   /// Where a joint, the base or an object has a tolerance, `free` holds for every path within all tolerances
   /// (doc/PROMISE.md, "Tolerances"). So do all other answers of this manager, clearance() too.
-  /// CertifiedContact::q_witness shows a contact within them. Certificates and Method::redon2004 do not know
-  /// tolerances: they throw std::invalid_argument.
+  /// CertifiedContact::q_witness shows a contact within them. Certificates state them (doc/TUBES.md).
+  /// Method::redon2004 does not know them: it throws std::invalid_argument.
   /// @throws std::invalid_argument: a number that is negative or not finite.
   void setJointTolerances(const JointTolerance& all);
   /// Sets the tolerance of one joint, in place of that of all joints. Needs setup().

@@ -15,6 +15,9 @@ struct JointTolerance {
   double angle = 0;
   /// m: the length of a joint that slides. The origin of a planar or floating joint may be off by it in any direction.
   double length = 0;
+
+  /// Whether one of both is above 0.
+  bool any() const { return angle > 0 || length > 0; }
 };
 
 /// How far an object may be from the pose that it is said to have. It may be turned by at most `angle` about a fixed
@@ -23,6 +26,9 @@ struct PoseTolerance {
   double length = 0;                                ///< m
   double angle = 0;                                 ///< rad
   Eigen::Vector3d pivot = Eigen::Vector3d::Zero();  ///< The fixed point, in the object's own frame, m.
+
+  /// Whether angle or length is above 0.
+  bool any() const { return angle > 0 || length > 0; }
 };
 
 }  // namespace fcl_artic

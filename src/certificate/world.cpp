@@ -86,10 +86,10 @@ double chordOf(double angle) {
   return 2 * std::sin(std::min(angle, 3.14159265358979323846) / 2);
 }
 
-std::string toleranceText(const WorldTolerances::OfPose& t) {
+std::string toleranceText(const PoseTolerance& t) {
   return " " + numberText(t.length) + " " + numberText(t.angle) + " " + vectorText(t.pivot) + "\n";
 }
-Give giveOf(const WorldTolerances::OfPose& t) {
+Give giveOf(const PoseTolerance& t) {
   Give give;
   give.at = t.pivot;
   give.slide = t.length;
@@ -98,7 +98,7 @@ Give giveOf(const WorldTolerances::OfPose& t) {
 }
 
 /// The lines of a joint's tolerance: of its variables, or of what several of them make up.
-std::string toleranceText(const KinematicTree& tree, JointId j, const WorldTolerances::OfJoint& t) {
+std::string toleranceText(const KinematicTree& tree, JointId j, const JointTolerance& t) {
   const int v = tree.jointVariable(j), slides = tree.joint(j).type == JointType::planar ? 2 : 3;
   std::string text;
   const auto line = [&](const char* what, int variable, double value) {
@@ -136,7 +136,7 @@ std::string toleranceText(const KinematicTree& tree, JointId j, const WorldToler
 }
 
 /// The gives of a joint's elements. @param t  of the joint, or of the one that it mimics.
-std::vector<Give> givesOf(const std::vector<Element>& elements, const WorldTolerances::OfJoint& t) {
+std::vector<Give> givesOf(const std::vector<Element>& elements, const JointTolerance& t) {
   std::vector<Give> gives;
   bool slid = false;
   for (std::size_t k = 0; k < elements.size(); ++k) {
@@ -357,7 +357,7 @@ class Builder {
 
  private:
   std::map<const ShapeTree*, int> geometry_of_;
-  std::map<std::string, WorldTolerances::OfPose> of_object_;
+  std::map<std::string, PoseTolerance> of_object_;
   std::string tolerance_lines_;
   std::set<std::array<std::string, 3>> unchecked_;
 };

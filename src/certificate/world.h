@@ -99,7 +99,7 @@ struct World {
 };
 
 /// @param registry  what is set up.
-World makeWorld(const Registry& registry, const WorldTolerances& tolerances = {});
+World makeWorld(const Registry& registry, const WorldTolerances& tolerances);
 /// Two bodies, "body1" and "body2", each with a motion of its own. The shapes must outlive the world.
 World makeWorld(const ShapeTree& shape1, const BodyMotion& motion1, const ShapeTree& shape2, const BodyMotion& motion2,
                 const WorldTolerances& tolerances = {});

@@ -40,7 +40,12 @@ struct ArticulatedCollisionManager::Impl {
   /// The world that certificates are about; made when first asked for. Safe from several threads.
   std::shared_ptr<const certificate::World> world() const {
     const std::lock_guard<std::mutex> lock(world_mutex_);
-    if (!world_) world_ = std::make_shared<const certificate::World>(certificate::makeWorld(registry));
+    if (!world_) {
+      const NamedTolerances& named = registry.tolerances();
+      const certificate::WorldTolerances tolerances = {named.straysOf(*registry.tree()).of_joint, named.base(),
+                                                       named.ofObjects()};
+      world_ = std::make_shared<const certificate::World>(certificate::makeWorld(registry, tolerances));
+    }
     return world_;
   }
   /// Adds a motion that was answered to what a certificate claims.

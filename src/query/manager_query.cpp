@@ -58,16 +58,6 @@ struct TableAdvice {
   }
 };
 
-/// @throws std::invalid_argument for what doesn't know tolerances of joints and poses.
-void refuseWithTolerances(const CertifiedRequest& request) {
-  const char* const what = request.method == Method::redon2004 ? "Method::redon2004"
-                           : request.certificate               ? "request.certificate"
-                                                               : nullptr;
-  if (!what) return;
-  throw std::invalid_argument(
-      std::string(what) + " does not know tolerances of joints, base or objects; resetTolerances() takes them away");
-}
-
 /// Gives the query the motion's variables, then those of the moving obstacles.
 /// @param moving  the latter, column k for t^k.
 /// @param time  of the obstacles' motions.
@@ -241,7 +231,10 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   const KinematicTree& robot = *registry.tree();
   impl_->requireReady();
   motion.requireOf(robot);
-  if (setup.strays()) refuseWithTolerances(request);
+  if (setup.strays() && request.method == Method::redon2004) {
+    throw std::invalid_argument(
+        "Method::redon2004 does not know tolerances of joints, base or objects; resetTolerances() takes them away");
+  }
   engine::Query query = makeQuery(request);
   query.check_scene = request.check_scene;
 
@@ -292,7 +285,9 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   if (context.details) {
     context.details->ignored.assign(answer.ignored, answer.ignored + answer.num_ignored);
     context.details->contact.reset();
-    if (answer.num_contacts > 0 && answer.contacts[0].certain) context.details->contact = answer.contacts[0];
+    // (With tolerances the motion itself may not touch there, and a certificate names no other.)
+    const bool touches = answer.num_contacts > 0 && answer.contacts[0].certain && !setup.strays();
+    if (touches) context.details->contact = answer.contacts[0];
   }
   if (context.never_apart) {
     context.never_apart->clear();

@@ -118,7 +118,7 @@ struct EveryJoint {
     tolerances.of_joint.resize(static_cast<std::size_t>(tree->numJoints()));
     for (const char* joint : {"fly", "turn", "roll", "drive", "slide"}) {
       const JointType type = tree->joint(tree->jointId(joint)).type;
-      WorldTolerances::OfJoint& t = tolerances.of_joint[static_cast<std::size_t>(tree->jointId(joint))];
+      JointTolerance& t = tolerances.of_joint[static_cast<std::size_t>(tree->jointId(joint))];
       if (type != JointType::prismatic) t.angle = 0.01;
       if (type != JointType::revolute && type != JointType::spherical) t.length = 0.002;
     }
@@ -152,7 +152,7 @@ TEST(CertificateTube, ToleranceOfEveryJoint) {
   expectProven(certificate);
   // The verifier has a sum of its own: with ten times the tolerances the same proof is refused.
   WorldTolerances larger = every.tolerances;
-  for (WorldTolerances::OfJoint& t : larger.of_joint) t = {30 * t.angle, 30 * t.length};
+  for (JointTolerance& t : larger.of_joint) t = {30 * t.angle, 30 * t.length};
   Certificate forged = certify(certificate::makeWorld(*every.registry, larger), every.motion());
   EXPECT_FALSE(forged);
 }
@@ -217,7 +217,7 @@ struct RandomTube {
         return meshBox(pose, Vector3d(a, b, c) / 2, 1);
     }
   }
-  static WorldTolerances::OfPose anyPose(test::Random& random, double size) {
+  static PoseTolerance anyPose(test::Random& random, double size) {
     const double length = random.uniform(0, size), angle = random.uniform(0, size);
     return {length, angle, random.box(0.5)};
   }
@@ -252,7 +252,7 @@ struct RandomTube {
     const double size = random.logUniform(1e-4, 0.1);
     tolerances.of_joint.resize(static_cast<std::size_t>(joints));
     for (JointId j = 0; j < joints; ++j) {
-      WorldTolerances::OfJoint& t = tolerances.of_joint[static_cast<std::size_t>(j)];
+      JointTolerance& t = tolerances.of_joint[static_cast<std::size_t>(j)];
       if (!random.oneIn(5))
         (tree->joint(j).type == JointType::prismatic ? t.length : t.angle) = random.uniform(0, size);
     }
@@ -273,8 +273,8 @@ int numberOfTubes(int usual) {
   return number ? std::atoi(number) : usual;
 }
 void multiply(WorldTolerances& tolerances, double factor) {
-  for (WorldTolerances::OfJoint& t : tolerances.of_joint) t = {factor * t.angle, factor * t.length};
-  const auto pose = [&](WorldTolerances::OfPose& t) { t = {factor * t.length, factor * t.angle, t.pivot}; };
+  for (JointTolerance& t : tolerances.of_joint) t = {factor * t.angle, factor * t.length};
+  const auto pose = [&](PoseTolerance& t) { t = {factor * t.length, factor * t.angle, t.pivot}; };
   pose(tolerances.of_base);
   for (auto& entry : tolerances.of_object) pose(entry.second);
 }
@@ -313,7 +313,7 @@ TEST(CertificateTube, RandomTubes) {
     RandomTube tube(random);
     Samples samples(i);
     const certificate::World world = certificate::makeWorld(*tube.registry, tube.tolerances);
-    const Certificate without = certify(certificate::makeWorld(*tube.registry), tube.motion);
+    const Certificate without = certify(certificate::makeWorld(*tube.registry, {}), tube.motion);
     if (!without) continue;  // the motion itself touches, for the most part
     const Certificate certificate = certify(world, tube.motion);
     if (!certificate) {
