@@ -65,7 +65,11 @@ class Strays : PartOfSolver {
     Lanes middle, over;
   };
   Sums ofSteps(const Chain& chain);
-  void direct(const Chain& chain, const Placement& inverse_a, double constant, Tube& tube);
+  /// All that has no direction: a length, and the angle by which it turns all steps.
+  struct Undirected {
+    double length, angle;
+  };
+  void direct(const Chain& chain, const Placement& inverse_a, const Undirected& others, Tube& tube);
   double ofBase(const Body& link);
   /// Sums over the steps up to one, of the world's sweep.
   struct Form {
@@ -200,15 +204,14 @@ inline Strays::Sums Strays::ofSteps(const Chain& chain) {
 /// the axis along a unit n by at most d |n.(u x r)| + (d^2 / 2) |r|. If other steps have turned its frame by at most D
 /// in all, D d |r| is added. So all that is no first order is less than the sum of all angles times the sum of all d
 /// |r|.
-/// @param constant  of all that has no direction.
-inline void Strays::direct(const Chain& chain, const Placement& inverse_a, double constant, Tube& tube) {
+inline void Strays::direct(const Chain& chain, const Placement& inverse_a, const Undirected& others, Tube& tube) {
   axes_.clear();
   if (!way_.size()) return;
   const engine::SweepView& view = problem().sweeps[chain.sweep];
   const StepBounds& last = frames_.bounds(chain.sweep, chain.step_b);
   const Mat3 R(inverse_a.R);
   const Vec3 t(inverse_a.t);
-  double angles = 0, strays = 0, slides = 0;
+  double angles = others.angle, strays = 0, slides = 0;
   for (int k = 0; k < way_.size(); ++k) {
     const engine::SweepStep& step = view.steps[way_[k]];
     const double s = query().strays * step.stray;
@@ -234,8 +237,8 @@ inline void Strays::direct(const Chain& chain, const Placement& inverse_a, doubl
     if (!s && !chain.a) continue;
     const Sums& all = s ? all_b_ : all_a_;
     const double room = 1 + 8 * (way_.size() + 8) * kUlp;
-    tube.rest_middle[s] = (constant + angles * maxLane(all.middle) + rounding) * room;
-    tube.rest[s] = (constant + angles * maxLane(all.over) + later + rounding) * room;
+    tube.rest_middle[s] = (others.length + angles * maxLane(all.middle) + rounding) * room;
+    tube.rest[s] = (others.length + angles * maxLane(all.over) + later + rounding) * room;
   }
   tube.axes = axes_.data();
   tube.count = axes_.size();
@@ -280,15 +283,17 @@ inline void Strays::between(PairId pair, double pose_error, Tube& tube) {
   const Mat3 R = transposed(Mat3(parts.inverse_a->R));
   const Vec3 t = -(R * Vec3(parts.inverse_a->t));
   const Outline a = outlineOf(A, R, t), b = outlineOf(B, *parts.placement_b);
-  // An obstacle that is larger than the link is not worth the work: nearly always the steps move the link by less.
-  const bool both = !problem().isScenePair(pair) || a.radius < b.radius;
+  const bool links = A.mover >= 0 && task_.isLink(A.mover);
+  // The base comes before all joints of the chain. Where it strays, it moves B: so do all joints then. An obstacle that
+  // is larger than the link is not worth the work: nearly always the steps move the link by less.
+  const bool base = !links && problem().base.any();
+  const bool both = !base && (!problem().isScenePair(pair) || a.radius < b.radius);
   const Chain chain = {parts.sweep, parts.step_b, both ? &a : nullptr, b, pose_error};
   const Sums least = ofSteps(chain);
-  const bool links = A.mover >= 0 && task_.isLink(A.mover);
-  const double poses = (query().strays * (A.stray + B.stray) + (links ? 0 : ofBase(B))) * (1 + 8 * kUlp);
+  const double poses = (query().strays * (A.stray + B.stray) + (base ? ofBase(B) : 0)) * (1 + 8 * kUlp);
   tube.middle = least.middle + Lanes(poses);
   tube.over = (maxLane(least.over) + poses) * (1 + 2 * kUlp);
-  direct(chain, *parts.inverse_a, poses, tube);
+  direct(chain, *parts.inverse_a, {poses, base ? query().strays * problem().base.angle : 0}, tube);
 }
 
 inline void Strays::begin() {
