@@ -27,7 +27,7 @@ struct Report {
   /// Whether `request` is what `result` answers. If not, as with an answer that comes from elsewhere, it is not
   /// printed.
   bool request_known = true;
-  std::string tolerances;  ///< ArticulatedCollisionManager::describeTolerances()
+  std::string tolerances = {};  ///< ArticulatedCollisionManager::describeTolerances()
 };
 
 /// "(0.5, -0.25, 0)": a place, m, in so many digits. No coordinate is "-0", or a 0 that rounding has changed.

@@ -160,7 +160,7 @@ TEST(CertificateTube, ToleranceOfEveryJoint) {
 // Without tolerances, a world has the bytes that it had before there were any.
 TEST(CertificateTube, NoToleranceNoLine) {
   const EveryJoint every;
-  const certificate::World world = certificate::makeWorld(*every.registry),
+  const certificate::World world = certificate::makeWorld(*every.registry, {}),
                            none = certificate::makeWorld(*every.registry, {});
   EXPECT_EQ(linesOf(*world.text, "tolerance"), "");
   EXPECT_EQ(*world.text, *none.text);
