@@ -276,8 +276,8 @@ std::string textReport(const Report& r) {
   std::string text = text::oneLine(headline(r)) + "\n";
   if (const std::string scope = scopeText(r.request); r.request_known && !scope.empty()) text += entry("scope", scope);
   if (!r.tolerances.empty()) {
-    text += entry("tolerance", fmt::format("{}every path within {}", result.isFree() ? "free is " : "asked of ",
-                                           r.tolerances));
+    text += entry("tolerance",
+                  fmt::format("{}every path within {}", result.isFree() ? "free is " : "asked of ", r.tolerances));
   }
   const bool several = result.contacts.size() > 1;
   for (std::size_t i = 0; i < result.contacts.size(); ++i) {

@@ -169,6 +169,8 @@ MEMBERS = {
             "setAllowedCollisions": "allowed",
             "allowedCollisions": "allowed",
             "setLinkPairProofs": "set_proofs",
+            "setJointTolerances": "set_joint_tolerance",
+            "describeTolerances": "tolerances",
             "update": "move(); geometries do not change",
             "clear": "make another World",
             "getObjects": "obstacles",

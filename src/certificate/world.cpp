@@ -82,8 +82,9 @@ Frame frameOf(const KinematicTree& tree, LinkId link, const std::vector<int>& fr
   return frame;
 }
 
+/// No shorter than the chord of an angle.
 double chordOf(double angle) {
-  return 2 * std::sin(std::min(angle, 3.14159265358979323846) / 2);
+  return std::min(angle, 2.0);
 }
 
 std::string toleranceText(const PoseTolerance& t) {
