@@ -112,6 +112,6 @@ _GONE = {
 }
 
 
-def note_on_gone(enumeration: type[Enum], value: str) -> str:
+def note_on_gone(enumeration: type[enum.Enum], value: str) -> str:
     """The advice on a value that an enumeration no longer has; empty for others."""
     return _GONE.get((enumeration, value), "")
