@@ -78,6 +78,11 @@ class PointsOfContact {
     for (int i = 0; i < 2; ++i) points_[i] = poseOf(i, q).inverse() * contact.point;
     normal_ = poseOf(0, q).linear().transpose() * contact.normal;
   }
+  /// Sets the contact's point and normal to where they are at q.
+  void place(const Eigen::VectorXd& q, CertifiedContact& contact) const {
+    contact.point = poseOf(1, q) * points_[1];
+    contact.normal = poseOf(0, q).linear() * normal_;
+  }
   /// The configuration within the joints' strays about q at which the points are nearest along the direction, to first
   /// order.
   Eigen::VectorXd nearest(const VariableStrays& strays, const Eigen::VectorXd& q) const {
@@ -140,6 +145,7 @@ void findWitnesses(const AnsweredQuery& asked, const Registry& registry, const V
           contact.certain = true;
           contact.q_witness = *at;
           contact.t_upper = t;
+          points.place(*at, contact);
         }
         if (contact.certain || t == 1) break;
       }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
@@ -109,8 +110,14 @@ std::string NamedTolerances::text() const {
   const auto add = [&](const std::string& name, double angle, double length) {
     if (!(angle > 0) && !(length > 0)) return;
     all += (all.empty() ? "" : ", ") + name;
-    if (length > 0) all += " " + shown(1000 * length) + " mm";
-    if (angle > 0) all += std::string(length > 0 ? " and " : " ") + shown(angle * 57.29577951308232) + " deg";
+    char text[64];
+    const auto write = [&](double value, const char* unit) {
+      std::snprintf(text, sizeof text, " %.6g %s", value, unit);
+      all += text;
+    };
+    if (length > 0) write(1000 * length, "mm");
+    if (length > 0 && angle > 0) all += " and";
+    if (angle > 0) write(angle * 57.29577951308232, "deg");
   };
   add(of_joint_.empty() ? "joints" : "other joints", of_all_joints_.angle, of_all_joints_.length);
   for (const auto& [name, own] : of_joint_) add("'" + name + "'", own.angle, own.length);
