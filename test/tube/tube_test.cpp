@@ -152,6 +152,50 @@ TEST(Tube, JointsBetweenTwoBodiesAloneCount) {
   }
 }
 
+TEST(Tube, TheLeverGrowsWithinALane) {
+  // The tip slides out from the axis of a turn by 1 m, an eighth of it in each lane of the first batch. At the end of
+  // the last lane the turn's error carries the tip farther than in the lane's middle: beyond the wall.
+  auto tree = std::make_shared<KinematicTree>("crane");
+  for (const char* link : {"base", "turned", "out"}) tree->addLink(link);
+  tree->addJoint(makeJoint("turn", JointType::revolute, "base", "turned", Vector3d::UnitZ()));
+  tree->addJoint(makeJoint("slide", JointType::prismatic, "turned", "out", Vector3d::UnitX()));
+  const double angle = 0.005, middle = 1.5 - 1.0 / 16;
+  for (const double lever : {middle + 0.04, 1.55}) {
+    ArticulatedCollisionManager manager(tree);
+    const auto tip = ball(kRadius);
+    const auto wall =
+        object(std::make_shared<fcl::Boxd>(10, 1, 10), pose(Vector3d(0, 0.5 + kRadius + lever * angle, 0)));
+    manager.bind("out", tip);
+    manager.registerObject(wall.get(), "wall");
+    manager.setJointTolerance("turn", {angle, 0});
+    manager.setup();
+    const CertifiedResult result = ask(manager, Eigen::Vector2d(0, 0.5), Eigen::Vector2d(0, 1.5));
+    EXPECT_EQ(result.isFree(), lever > 1.5) << lever;
+    EXPECT_EQ(result.certain, lever < 1.5) << lever;
+  }
+}
+
+TEST(Tube, ProofsOfRangesHoldForWhatTheJointMayBe) {
+  // Beyond the joint's limit of 1 the tip meets a ball on the base.
+  auto tree = std::make_shared<KinematicTree>("arm");
+  for (const char* link : {"base", "arm"}) tree->addLink(link);
+  tree->addJoint(Joint::revolute("joint", "base", "arm", Vector3d::UnitZ(), Eigen::Isometry3d::Identity(), 0, 1));
+  ArticulatedCollisionManager manager(tree);
+  const auto tip = ball(kRadius), stop = ball(kRadius);
+  manager.bind("arm", tip, pose(Vector3d::UnitX()));
+  manager.bind("base", stop, pose(Vector3d(std::cos(1.1), std::sin(1.1), 0)));
+  AllowedCollisionMatrix checked;
+  checked.disallow("base", "arm");
+  manager.setAllowedCollisions(checked);
+  manager.setLinkPairProofs(manager.classifyLinkPairs().proofs);
+  const VectorXd q0 = VectorXd::Zero(1), q1 = VectorXd::Constant(1, 0.99);
+  for (const double tolerance : {0.0, 0.05, 0.15}) {
+    manager.setJointTolerances({tolerance, 0});
+    manager.setup();
+    EXPECT_EQ(ask(manager, q0, q1).isFree(), tolerance < 0.1) << tolerance;
+  }
+}
+
 TEST(Tube, BaseAndObjects) {
   OneTurn arm;
   const auto obstacle = ball(kRadius, Vector3d(1, 0.1, 0));
