@@ -168,15 +168,16 @@ TreeStrays NamedTolerances::straysOf(const KinematicTree& tree) const {
 double NamedTolerances::strayOf(const std::string& object, const ShapeTree& shape) const {
   const auto found = of_object_.find(object);
   if (found == of_object_.end()) return 0;
-  const auto& [length, angle, pivot] = found->second;
+  const PoseTolerance& tolerance = found->second;
+  if (tolerance.angle == 0) return tolerance.length;
   // The root's box holds the geometry. The chord of an angle is no longer than the angle. It is no longer than 2
   // either, but that does not count here: a query may take a part of a large angle (engine::Query::strays).
   const engine::Node& root = shape.view().nodes[0];
   const auto corner = [&](const float* ends) -> Eigen::Array3d {
-    return (Eigen::Vector3f::Map(ends).cast<double>() - pivot).array().abs();
+    return (Eigen::Vector3f::Map(ends).cast<double>() - tolerance.pivot).array().abs();
   };
   const double farthest = corner(root.lo).max(corner(root.hi)).matrix().norm();
-  return (length + (angle > 0 ? angle * farthest : 0)) * (1 + 8 * kUlp);
+  return (tolerance.length + tolerance.angle * farthest) * (1 + 8 * kUlp);
 }
 
 }  // namespace fcl_artic
