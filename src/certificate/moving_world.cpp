@@ -186,9 +186,9 @@ double MovingWorld::stray(int a, std::int32_t node_a, int b, std::int32_t node_b
   if (!world_.tolerant) return 0;
   const std::vector<Place> places = placesBetween(a, b);
   // Seen from the k-th place on: A moves at those before it, B at the others.
-  double others = 0, least = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity();
   std::vector<double> of_b;
-  for (const Place& place : places) others += of_b.emplace_back(moveAt(place, b, node_b, t));
+  for (const Place& place : places) of_b.push_back(moveAt(place, b, node_b, t));
   double own = 0;
   for (std::size_t k = 0; k <= places.size(); ++k) {
     double sum = own;  // summed anew: infinite ones can't be subtracted
