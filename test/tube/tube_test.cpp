@@ -160,18 +160,27 @@ TEST(Tube, TheLeverGrowsWithinALane) {
   tree->addJoint(makeJoint("turn", JointType::revolute, "base", "turned", Vector3d::UnitZ()));
   tree->addJoint(makeJoint("slide", JointType::prismatic, "turned", "out", Vector3d::UnitX()));
   const double angle = 0.005, middle = 1.5 - 1.0 / 16;
-  for (const double lever : {middle + 0.04, 1.55}) {
-    ArticulatedCollisionManager manager(tree);
-    const auto tip = ball(kRadius);
-    const auto wall =
-        object(std::make_shared<fcl::Boxd>(10, 1, 10), pose(Vector3d(0, 0.5 + kRadius + lever * angle, 0)));
-    manager.bind("out", tip);
-    manager.registerObject(wall.get(), "wall");
-    manager.setJointTolerance("turn", {angle, 0});
-    manager.setup();
-    const CertifiedResult result = ask(manager, Eigen::Vector2d(0, 0.5), Eigen::Vector2d(0, 1.5));
-    EXPECT_EQ(result.isFree(), lever > 1.5) << lever;
-    EXPECT_EQ(result.certain, lever < 1.5) << lever;
+  // A ball meets the wall by a bound in any direction. A large thin plate needs the share along the wall's normal: its
+  // own corners are farther from the axis than the bound in any direction lets them be.
+  struct Tip {
+    std::shared_ptr<fcl::CollisionGeometryd> geometry;
+    double reach, beyond;  ///< towards the wall; from the axis, beyond the tip's middle
+  };
+  for (const Tip& tip : {Tip{std::make_shared<fcl::Sphered>(kRadius), kRadius, 0},
+                         Tip{std::make_shared<fcl::Boxd>(2 * kRadius, 1, 1), 0.5, kRadius}}) {
+    for (const double lever : {middle + 0.04, 1.6}) {
+      ArticulatedCollisionManager manager(tree);
+      const auto body = object(tip.geometry);
+      const double gap = (lever + tip.beyond) * angle;
+      const auto wall = object(std::make_shared<fcl::Boxd>(10, 1, 10), pose(Vector3d(0, 0.5 + tip.reach + gap, 0)));
+      manager.bind("out", body);
+      manager.registerObject(wall.get(), "wall");
+      manager.setJointTolerance("turn", {angle, 0});
+      manager.setup();
+      const CertifiedResult result = ask(manager, Eigen::Vector2d(0, 0.5), Eigen::Vector2d(0, 1.5));
+      EXPECT_EQ(result.isFree(), lever > 1.5) << lever;
+      EXPECT_EQ(result.certain, lever < 1.5) << lever;
+    }
   }
 }
 

@@ -228,7 +228,9 @@ inline void Strays::direct(const Chain& chain, const Placement& inverse_a, const
     return axes_.clear();
   }
   // Half a lane later the share is another one by the speeds of all that it is made of, n among them.
-  const double reach = max(chain.a ? chain.a->reach : 0.0, chain.b.reach);
+  // (Any point of a piece may be the one that counts, so the outlines' radii count, too.)
+  const double reach_b = chain.b.reach + chain.b.radius;
+  const double reach = chain.a ? max(chain.a->reach + chain.a->radius, reach_b) : reach_b;
   const double lever = last.length + reach, rate = last.rates.a;
   const double later =
       frames_.batch().d * (strays * (2 * rate * lever + 2 * last.D1 + rate * reach) + slides * 2 * rate);
