@@ -211,18 +211,18 @@ ViewOptions mendedViews(const ViewOptions& views) {
 
 /// Shows the first plan that is not free, or else the first, and beside it the mended plan.
 /// @return one line for the user.
-std::string writePlanViews(const CertifyVerb& o, const ViewOptions& of_mended, const World& world,
-                           const ArticulatedCollisionManager& manager, const std::vector<CertifiedPlan>& all) {
+std::string writePlanViews(const ViewOptions& of_plan, const ViewOptions& of_mended, const World& world,
+                           const ArticulatedCollisionManager& manager, const CertifyReport& all) {
   const CertifiedPlan* shown = nullptr;
-  for (const CertifiedPlan& plan : all) {
+  for (const CertifiedPlan& plan : all.plans) {
     if (!plan.motion) continue;
     if (!shown || (shown->result.isFree() && !plan.result.isFree())) shown = &plan;
   }
   if (!shown) return "there is no plan to show";
   const auto show = [&](const ViewOptions& views, const CertifiedPlan& plan) {
-    writeViews(views, world, manager, plan.motion->trajectory, reportOf(manager.tree(), o.certify.request, plan));
+    writeViews(views, world, manager, plan.motion->trajectory, reportOf(all, plan));
   };
-  show(o.views, *shown);
+  show(of_plan, *shown);
   if (!shown->as_mended || !shown->as_mended->motion) return "shown: " + shown->title();
   show(of_mended, *shown->as_mended);
   return fmt::format("shown: {}, and what it is mended to in {}{}{}", shown->title(), of_mended.html,
@@ -296,10 +296,9 @@ int runCertify(CertifyVerb& o) {
   }
   std::vector<std::string> notes = world.notes(*manager);
   notes.insert(notes.end(), plan_notes.begin(), plan_notes.end());
-  if (const std::string tolerances = manager->describeTolerances(); !tolerances.empty()) {
-    notes.push_back("free is every path within " + tolerances);
-  }
-  const CertifyReport report{tree, o.certify.request, all, notes, seconds, o.failed_only};
+  const std::string tolerances = manager->describeTolerances();
+  if (!tolerances.empty() && all.size() != 1) notes.push_back("free is every path within " + tolerances);
+  const CertifyReport report{tree, o.certify.request, all, notes, seconds, o.failed_only, tolerances};
   UnwrittenOutputs& unwritten = world.unwritten;
   if (!o.out.empty()) unwritten.attempt([&] { writeOut(o, *manager, all); });
   if (certificates.wanted()) {
@@ -307,7 +306,8 @@ int runCertify(CertifyVerb& o) {
       notes.push_back(writeCertificates(certificates, all, verifierArguments(o.world) + planArguments(o, all)));
     });
   }
-  if (o.views.wanted()) unwritten.attempt([&] { notes.push_back(writePlanViews(o, of_mended, world, *manager, all)); });
+  if (o.views.wanted())
+    unwritten.attempt([&] { notes.push_back(writePlanViews(o.views, of_mended, world, *manager, report)); });
   if (!o.csv.empty()) unwritten.attempt([&] { files::write(o.csv, csvReport(report)); });
   notes.insert(notes.end(), unwritten.reasons().begin(), unwritten.reasons().end());
   if (o.json) {

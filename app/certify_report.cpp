@@ -128,8 +128,9 @@ Json planJson(const CertifyReport& r, const CertifiedPlan& plan) {
     return out;
   }
   const plans::PlanMotion& motion = *plan.motion;
-  const Json all = jsonReport(reportOf(r.tree, r.request, plan));
-  for (const char* key : {"status", "t_lower", "t_upper", "certain", "nothing_checked", "t_begin", "t_end"}) {
+  const Json all = jsonReport(reportOf(r, plan));
+  for (const char* key :
+       {"status", "t_lower", "t_upper", "certain", "nothing_checked", "t_begin", "t_end", "tolerances"}) {
     out[key] = all.at(key);
   }
   const bool free = plan.result.isFree();
@@ -177,10 +178,10 @@ std::string field(const std::string& text) {
 
 }  // namespace
 
-Report reportOf(const KinematicTree& tree, const CertifiedRequest& request, const CertifiedPlan& plan) {
+Report reportOf(const CertifyReport& all, const CertifiedPlan& plan) {
   const JointTrajectory& way = plan.motion->trajectory;
-  Report report{tree,
-                request,
+  Report report{all.tree,
+                all.request,
                 plan.result,
                 plan.notes,
                 [&way](double t) { return way.configuration(t); },
@@ -188,6 +189,7 @@ Report reportOf(const KinematicTree& tree, const CertifiedRequest& request, cons
                 way.endTime(),
                 plan.clearance ? &*plan.clearance : nullptr};
   report.pieces = way.numPieces();
+  report.tolerances = all.tolerances;
   return report;
 }
 
@@ -199,7 +201,7 @@ std::string textReport(const CertifyReport& r) {
     if (plan.result.status != Status::free) {
       text += fmt::format("after waypoint {}\n", plan.motion->waypointBefore(plan.result.t_lower));
     }
-    text += textReport(reportOf(r.tree, r.request, plan));
+    text += textReport(reportOf(r, plan));
     if (plan.line) text += line("", plan.line->text());
     if (const std::string mended = mendedText(plan); !mended.empty()) text += line("", mended);
     for (const std::string& note : r.notes) text += line("note: ", note);

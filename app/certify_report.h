@@ -19,10 +19,11 @@ struct CertifyReport {
   const std::vector<std::string>& notes;  ///< of robot and scene
   double seconds = 0;                     ///< that all queries took
   bool failed_only = false;               ///< rows of the table
+  std::string tolerances = {};            ///< as Report's
 };
 
-/// The answer to a plan that has a motion. It refers to all three.
-Report reportOf(const KinematicTree& tree, const CertifiedRequest& request, const CertifiedPlan& plan);
+/// The answer to a plan that has a motion. It refers to the report's members and to the plan.
+Report reportOf(const CertifyReport& all, const CertifiedPlan& plan);
 /// One plan in full; several as a table, with totals.
 std::string textReport(const CertifyReport& report);
 /// With the keys of fcl_artic(1).

@@ -33,16 +33,6 @@ std::map<std::string, std::string> packagesOf(const RobotOptions& options) {
   return packages;
 }
 
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  for (std::size_t at = 0;;) {
-    const std::size_t end = text.find(separator, at);
-    parts.push_back(text.substr(at, end == std::string::npos ? end : end - at));
-    if (end == std::string::npos) return parts;
-    at = end + 1;
-  }
-}
-
 /// @param angle  whether the ending deg may be there.
 std::optional<double> number(std::string_view text, bool angle) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
@@ -74,6 +64,16 @@ std::optional<Eigen::Isometry3d> poseOf(const std::string& text) {
 }
 
 }  // namespace
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  for (std::size_t at = 0;;) {
+    const std::size_t end = text.find(separator, at);
+    parts.push_back(text.substr(at, end == std::string::npos ? end : end - at));
+    if (end == std::string::npos) return parts;
+    at = end + 1;
+  }
+}
 
 void addRobotFile(CLI::App& verb, RobotOptions& o, const std::string& names) {
   verb.add_option(names, o.robot, "Robot (URDF)")

@@ -47,6 +47,9 @@ Robot readRobot(const RobotOptions& options);
 /// @throws std::invalid_argument beginning with `option`.
 Eigen::Isometry3d parsePose(const std::string& text, const std::string& option);
 
+/// The parts of a text between separators; one at least, perhaps empty.
+std::vector<std::string> split(const std::string& text, char separator);
+
 /// An object that a link carries.
 struct Attachment {
   std::string link;

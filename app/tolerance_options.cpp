@@ -9,11 +9,13 @@
 
 #include <fmt/format.h>
 
+#include "kinematics/angles.h"
+#include "robot_options.h"
+
 namespace fcl_artic::app {
 namespace {
 
 constexpr const char* kGroup = "Robot and scene";
-constexpr double kDegree = 3.14159265358979323846 / 180;
 
 /// A number with its unit.
 struct Quantity {
@@ -36,7 +38,7 @@ Quantity readQuantity(const std::string& where, const std::string& text) {
     double size;
   };
   static constexpr Unit kUnits[] = {
-      {"deg", true, kDegree}, {"rad", true, 1}, {"m", false, 1}, {"cm", false, 0.01}, {"mm", false, 0.001}};
+      {"deg", true, kRadiansPerDegree}, {"rad", true, 1}, {"m", false, 1}, {"cm", false, 0.01}, {"mm", false, 0.001}};
   if (error != std::errc() || !std::isfinite(value)) refuse(where, text, "does not begin with a number");
   if (value < 0) refuse(where, text, "is below 0");
   for (const Unit& known : kUnits) {
@@ -45,20 +47,10 @@ Quantity readQuantity(const std::string& where, const std::string& text) {
   refuse(where, text, "has no unit: write deg or rad for an angle, m, cm or mm for a length");
 }
 
-std::vector<std::string> splitAtCommas(const std::string& text) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
-}
-
 ToleranceSettings::OfObject readPose(const std::string& where, const std::string& object, const std::string& text) {
   ToleranceSettings::OfObject of{where, object, 0, 0};
   bool has[2] = {false, false};
-  for (const std::string& part : splitAtCommas(text)) {
+  for (const std::string& part : split(text, ',')) {
     const Quantity quantity = readQuantity(where, part);
     if (std::exchange(has[quantity.angle], true)) refuse(where, text, "has two angles or two lengths");
     (quantity.angle ? of.angle : of.length) = quantity.value;
@@ -91,7 +83,7 @@ ToleranceSettings readToleranceSettings(const ToleranceOptions& o) {
   ToleranceSettings out;
   for (const std::string& option : o.joints) {
     const std::string where = "--joint-tolerance";
-    for (const std::string& text : splitAtCommas(option)) {
+    for (const std::string& text : split(option, ',')) {
       const std::size_t equals = text.rfind('=');
       ToleranceSettings::OfJoint of{where, equals == std::string::npos ? "" : text.substr(0, equals), {}, {}};
       if (equals == 0) refuse(where, text, "names no joint");

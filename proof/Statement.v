@@ -285,8 +285,7 @@ Definition ends (m : motion) (k : nat) : R :=
 (** A piece begins where the one before ends: each turn and slide differs by 2^-29 and 2^-39 of it (2^-20 at most). The
     rotation of a frame with `Rotate` differs by 2^-27 in each entry; these are the ways of the frame's coordinate axes. *)
 Definition way (M : vec -> vec) (axis : vec) := sub (M axis) (M (Vec 0 0 0)).
-Definition joined (w : world) (p p' : piece) : Prop :=
-  forall f e, In f (frames w) -> In e (elements f) ->
+Definition element_joined (p p' : piece) (f : frame) (e : element) : Prop :=
   match e with
   | Turn _ v m _ | Slide _ v m _ =>
       let x := real m * value p 1 v in
@@ -297,6 +296,8 @@ Definition joined (w : world) (p p' : piece) : Prop :=
       forall axis, In axis [Vec 1 0 0; Vec 0 1 0; Vec 0 0 1] ->
       near (/ 2 ^ 27) (way (fun x => O (M x)) axis) (way (fun x => O (M' x)) axis)
   end.
+Definition joined (w : world) (p p' : piece) : Prop :=
+  forall f e, In f (frames w) -> In e (elements f) -> element_joined p p' f e.
 
 (** Bodies i and j are checked at time t of piece k, and have a point in common there, wherever rotations and axes let
     the frames stand; or, if only [near], points that are no farther from each other than the margin. *)

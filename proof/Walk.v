@@ -86,15 +86,7 @@ Definition ignored_until (p : piece) (i j : nat) : Z :=
   fold_right (fun e latest => let '(k, l, u) := e in
                 if Nat.eqb k i && Nat.eqb l j then Z.max (number_down u) latest else latest) (- one)%Z (ignored p).
 
-Definition margin_up (w : world) (m : motion) (a b : body) : Z :=
-  (number_up (added_margin m) +
-   match pair_margin w a b, own_margin w a, own_margin w b with
-   | Some x, _, _ => number_up x
-   | None, Some x, Some y => Z.max (number_up x) (number_up y)
-   | None, Some x, None => number_up x
-   | None, None, Some y => number_up y
-   | None, None, None => number_up (general_margin m)
-   end)%Z.
+Definition margin_up := rounded_margin number_up.
 
 Definition partner_of (w : world) (m : motion) (p : piece) (b a : prepared) : partner :=
   Partner (pr_sbody a) (pr_pieces a) (margin_up w m (pr_body a) (pr_body b))
@@ -220,7 +212,7 @@ Qed.
 
 Lemma margin_up_ok a b : margin w m a b <= V (margin_up w m a b).
 Proof.
-  unfold margin, margin_up. rewrite V_add. apply Rplus_le_compat; [apply number_up_ok|].
+  unfold margin, margin_up, rounded_margin. rewrite V_add. apply Rplus_le_compat; [apply number_up_ok|].
   destruct (pair_margin w a b); [apply number_up_ok|].
   destruct (own_margin w a) as [x|], (own_margin w b) as [y|]; try apply number_up_ok.
   destruct (V_max (number_up x) (number_up y)) as [L1 L2].
@@ -369,19 +361,9 @@ Proof.
   pose proof (bound_ge _ 0 _ Z1 (holds_sub _ _ _ _ _ C C')). repeat split; lra.
 Qed.
 
-Lemma frame_joins_ok p p' f : frame_joins p p' f = true -> forall e, In e (elements f) ->
-  match e with
-  | Turn _ v m _ | Slide _ v m _ =>
-      let x := real m * value p 1 v in
-      Rabs (x - real m * value p' 0 v) <= / 2 ^ 29 + Rmin (Rabs x / 2 ^ 39) (/ 2 ^ 20)
-  | Rotate _ =>
-      forall O M M', pose_map (origin f) O -> elements_map (at_time p 1) (elements f) M ->
-      elements_map (at_time p' 0) (elements f) M' ->
-      forall axis, In axis [Vec 1 0 0; Vec 0 1 0; Vec 0 0 1] ->
-      near (/ 2 ^ 27) (way (fun x => O (M x)) axis) (way (fun x => O (M' x)) axis)
-  end.
+Lemma frame_joins_ok p p' f : frame_joins p p' f = true -> forall e, In e (elements f) -> element_joined p p' f e.
 Proof.
-  unfold frame_joins. rewrite andb_true_iff, forallb_forall. intros [H1 H2] e Ie. specialize (H1 e Ie).
+  unfold frame_joins, element_joined. rewrite andb_true_iff, forallb_forall. intros [H1 H2] e Ie. specialize (H1 e Ie).
   destruct e as [a v mm c | a v mm c | v]; [apply value_joins_ok; exact H1 | apply value_joins_ok; exact H1|].
   intros O M M' HO HM HM'. apply orb_true_iff in H2. destruct H2 as [H2|H2].
   { apply negb_true_iff in H2. assert (K : existsb (fun e => match e with Rotate _ => true | _ => false end) (elements f) = true)

@@ -556,19 +556,21 @@ Definition shows (A B : geometry) (rx ry rz : func) (margin : Z) (x : witness) :
 
 Definition sbody_of (b : body) : sbody := Sbody (body_frame b) (placed (body_place b)).
 
-Definition margin_down (w : world) (m : motion) (a b : body) : Z :=
-  (number_down (added_margin m) +
+(** A pair's margin, each number of it rounded by [round]. *)
+Definition rounded_margin (round : number -> Z) (w : world) (m : motion) (a b : body) : Z :=
+  (round (added_margin m) +
    match pair_margin w a b, own_margin w a, own_margin w b with
-   | Some x, _, _ => number_down x
-   | None, Some x, Some y => Z.max (number_down x) (number_down y)
-   | None, Some x, None => number_down x
-   | None, None, Some y => number_down y
-   | None, None, None => number_down (general_margin m)
+   | Some x, _, _ => round x
+   | None, Some x, Some y => Z.max (round x) (round y)
+   | None, Some x, None => round x
+   | None, None, Some y => round y
+   | None, None, None => round (general_margin m)
    end)%Z.
+Definition margin_down := rounded_margin number_down.
 
 Lemma margin_down_ok w m a b : V (margin_down w m a b) <= margin w m a b.
 Proof.
-  unfold margin, margin_down. rewrite V_add. apply Rplus_le_compat; [apply number_down_ok|].
+  unfold margin, margin_down, rounded_margin. rewrite V_add. apply Rplus_le_compat; [apply number_down_ok|].
   destruct (pair_margin w a b); [apply number_down_ok|].
   destruct (own_margin w a) as [x|], (own_margin w b) as [y|]; try apply number_down_ok.
   pose proof (number_down_ok x). pose proof (number_down_ok y).

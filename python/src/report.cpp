@@ -60,6 +60,7 @@ py::object reportOn(const World& world, const Question& question, const Certifie
   const std::vector<std::string> notes = world.robot().notes;
   app::Report report{*world.tree(), asked, result,  notes, [&](double t) { return app::configurationAt(question, t); },
                      begin,         end,   nullptr, 1,     given == nullptr || options.size() > 0};
+  report.tolerances = world.manager().look([](const ArticulatedCollisionManager& m) { return m.describeTolerances(); });
   if (const auto* trajectory = std::get_if<JointTrajectory>(&question)) report.pieces = trajectory->numPieces();
   const std::vector<app::PageBody> bodies = bodiesOf(world, begin, end - begin);
   app::DistanceOptions measured;

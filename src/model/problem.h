@@ -29,14 +29,14 @@ struct Body {
   const InnerBalls* balls = nullptr;      ///< of a link; null: none known
   const SolidSpace* space = nullptr;      ///< of a mesh that is a solid; null: any other body
   const SurfacePoints* points = nullptr;  ///< of any body, where a mesh is a solid
-  /// m: each of its points may be this far from where the body's pose puts it; times Query::strays.
+  /// m: each of its points may be this far from where the body's pose puts it.
   double stray = 0;
   /// Still bodies: axis-aligned box in the world.
   double lo[3] = {}, hi[3] = {};
 };
 
 /// How far the robot's base may be from where the world's sweep begins: turned by an angle about a point of the world,
-/// then moved by a length. Times Query::strays.
+/// then moved by a length.
 struct BaseStray {
   double length = 0, angle = 0;  ///< m, rad
   double pivot[3] = {};

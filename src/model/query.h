@@ -31,7 +31,6 @@ struct Query {
   const double* orientations = nullptr;  ///< rotations R0 of turns, row-major, nine numbers each
   double tolerance_time = 1e-6, tolerance_distance = 1e-6;
   Margins margins;
-  double strays = 1;  ///< how many times the problem's strays count; 0: all is where the motion says
   bool check_scene = true, check_self = true, every_pair = false, ignore_initial = false, measure_times = false;
   bool any = false;               ///< stop at the first contact that is proven, wherever on the way it is
   std::int32_t max_contacts = 1;  ///< each of another pair; the search does not depend on it

@@ -26,6 +26,11 @@ enum class StepKind : std::int32_t {
   bounded,    ///< BoundedSource, or its inverse
 };
 
+/// Whether the step is a turn that a variable says, about an axis or any. (Static: each instruction set has its own.)
+static inline bool turns(StepKind kind) {
+  return kind == StepKind::revolute || kind == StepKind::turn;
+}
+
 /// A motion that only its author knows: plain functions, so that the engine can ask.
 struct BoundedSource {
   const void* self = nullptr;
@@ -49,7 +54,7 @@ struct SweepStep {
   std::int32_t variable = -1;   ///< revolute, prismatic: the variable; slide, turn: the first of three
   double multiplier = 1, offset = 0;  ///< q = multiplier * q_variable + offset; slide, turn: offset 0
   /// The factor may be this far from what the motion gives it: rad for a revolute step or a turn (the angle of the
-  /// rotation between both), m for the others. Times Query::strays.
+  /// rotation between both), m for the others.
   double stray = 0;
   std::int32_t orientation = -1;          ///< turn: number of its R0 among Query::orientations; -1: none
   const BoundedSource* source = nullptr;  ///< bounded

@@ -48,7 +48,7 @@ inline void boundSteps(const SweepView& sweep, const engine::Query& query, doubl
     b.D2 = p.D2 + r.second() * step.perp + s.second() * step.axial;
     b.D3 = p.D3 + r.third() * step.perp + s.third() * step.axial;
     b.slide_rate = p.slide_rate;
-    if (step.kind != StepKind::revolute && step.kind != StepKind::turn) {  // Leibniz for the slide, in that frame, too
+    if (!turns(step.kind)) {  // Leibniz for the slide, in that frame, too
       const double* m = factor.slide;
       b.slide_rate += m[1];
       b.D1 += r.first() * m[0] + m[1];

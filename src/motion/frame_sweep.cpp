@@ -211,9 +211,8 @@ void FrameSweep::setStrays(const std::vector<JointTolerance>& of_joint) {
     step.stray = 0;
     if (from.joint < 0 || of_joint.empty()) continue;
     const JointTolerance& tolerance = of_joint[static_cast<std::size_t>(from.joint)];
-    const bool turns = step.kind == engine::StepKind::revolute || step.kind == engine::StepKind::turn;
     // A planar joint slides by two factors: its length is that of both together, so the first one has it all.
-    step.stray = turns ? tolerance.angle : from.factor == 0 ? tolerance.length : 0;
+    step.stray = engine::turns(step.kind) ? tolerance.angle : from.factor == 0 ? tolerance.length : 0;
   }
 }
 

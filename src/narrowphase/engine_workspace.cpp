@@ -144,7 +144,7 @@ void EngineWorkspace::nameFeatures(const Problem& problem, const Query& query, L
   static_assert(static_cast<int>(FeatureKind::edgeFace) == kEdgeFace &&
                 static_cast<int>(FeatureKind::faceEdge) == kFaceEdge &&
                 static_cast<int>(FeatureKind::volume) == kVolume);
-  if (contact.feature >= 0 || query.margins.of(contact.pair) > 0 || (problem.strays && query.strays > 0)) return;
+  if (contact.feature >= 0 || query.margins.of(contact.pair) > 0 || problem.strays) return;
   const Piece *a = pieceOf(problem, contact.body_a, contact.piece_a),
               *b = pieceOf(problem, contact.body_b, contact.piece_b);
   if (!a || !b || a->num_vertices != 3 || b->num_vertices != 3) return;

@@ -12,17 +12,16 @@
 #include "fcl/fcl_geometry.h"
 #include "model/add_fields.h"
 #include "narrowphase/engine.h"
+#include "numerics/require.h"
 #include "numerics/shown.h"
 #include "redon/options.h"
 
 namespace fcl_artic {
 namespace {
 
-void requireTolerance(double x, const char* name, bool positive) {
-  if (!std::isfinite(x) || x < 0 || (positive && x == 0)) {
-    throw std::invalid_argument(std::string("request.") + name + " is " + shown(x) +
-                                (positive ? ", not a positive number" : ", not a number >= 0"));
-  }
+void requirePositive(double x, const char* name) {
+  if (std::isfinite(x) && x > 0) return;
+  throw std::invalid_argument(std::string("request.") + name + " is " + shown(x) + ", not a positive number");
 }
 
 }  // namespace
@@ -35,15 +34,15 @@ WorkspaceLoan::WorkspaceLoan() {
 }
 
 engine::Margins marginsOf(const Tolerances& request) {
-  requireTolerance(request.margin, "margin", false);
-  requireTolerance(request.added_margin, "added_margin", false);
-  requireTolerance(request.margin + request.added_margin, "margin + added_margin", false);
+  requireNotNegative(request.margin, "request.margin");
+  requireNotNegative(request.added_margin, "request.added_margin");
+  requireNotNegative(request.margin + request.added_margin, "request.margin + added_margin");
   return engine::Margins(request.margin, request.added_margin);
 }
 
 engine::Query makeQuery(const CertifiedPairRequest& request) {
-  requireTolerance(request.tolerance_time, "tolerance_time", true);
-  requireTolerance(request.tolerance_distance, "tolerance_distance", true);
+  requirePositive(request.tolerance_time, "tolerance_time");
+  requirePositive(request.tolerance_distance, "tolerance_distance");
   const engine::Margins margins = marginsOf(request);
   const int level = request.redon.refinement_level;
   if (level < -1 || level > 6) {

@@ -5,9 +5,11 @@
 #include "fcl_artic/manager.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <set>
 #include <stdexcept>
 
+#include "kinematics/angles.h"
 #include "query/manager_impl.h"
 
 namespace fcl_artic {
@@ -156,7 +158,25 @@ void ArticulatedCollisionManager::resetTolerances() {
 }
 
 std::string ArticulatedCollisionManager::describeTolerances() const {
-  return impl_->registry.tolerances().text();
+  const NamedTolerances& tolerances = impl_->registry.tolerances();
+  std::string all;
+  const auto add = [&](const std::string& name, const auto& tolerance) {
+    if (!tolerance.any()) return;
+    all += (all.empty() ? "" : ", ") + name;
+    const auto write = [&](double value, const char* unit) {
+      char text[64];
+      std::snprintf(text, sizeof text, " %.6g %s", value, unit);
+      all += text;
+    };
+    if (tolerance.length > 0) write(1000 * tolerance.length, "mm");
+    if (tolerance.length > 0 && tolerance.angle > 0) all += " and";
+    if (tolerance.angle > 0) write(tolerance.angle / kRadiansPerDegree, "deg");
+  };
+  add(tolerances.ofJoints().empty() ? "joints" : "other joints", tolerances.ofAllJoints());
+  for (const auto& [name, own] : tolerances.ofJoints()) add("'" + name + "'", own);
+  add("base", tolerances.base());
+  for (const auto& [name, own] : tolerances.ofObjects()) add("'" + name + "'", own);
+  return all;
 }
 
 void ArticulatedCollisionManager::setVisibility(std::shared_ptr<const VisibilityCuller> culler) {

@@ -250,8 +250,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   (context.own_margins ? setup.margins() : setup.marginsOfNeighbours()).putInto(query.margins);
   restrictPairs(request, setup, problem, query.margins);
   if (context.left_out && !context.left_out->empty()) leaveOut(*context.left_out, *workspace, problem);
-  query.strays = context.strays;
-  const VariableStrays variable_strays = setup.variableStrays(query.strays);
+  const VariableStrays variable_strays = setup.variableStrays();
   TableAdvice advice{setup.tables(), setup.proven(), problem, motion, variable_strays, query.margins, *workspace};
   if (request.check_self && request.method == Method::standard) query.ask(advice.advisor());
   if (context.may_ignore) {
@@ -269,7 +268,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
     result.contacts.push_back(report(registry, motion, context.time, answer.contacts[i]));
   }
-  if (setup.strays() && query.strays > 0 && !result.isFree()) {
+  if (setup.strays() && !result.isFree()) {
     findWitnesses({problem, query, motion, context.time}, registry, variable_strays, answer, *workspace, result);
   }
   keepFirstOfEachPair(result.certain, result.contacts);

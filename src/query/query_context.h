@@ -27,7 +27,6 @@ inline TimePart partOfTime(const JointTrajectory& trajectory, std::size_t piece)
 struct ArticulatedCollisionManager::QueryContext {
   TimePart time;            ///< the part of the moving obstacles' motions that the query's [0, 1] is
   bool own_margins = true;  ///< pairs' own margins hold; false: those of neighbours alone (clearance())
-  double strays = 1;        ///< how many times tolerances of joints and poses count
   /// Pairs of the engine's problem: only their initial contacts may be ignored; null: those of all pairs may.
   const std::vector<engine::PairId>* may_ignore = nullptr;
   /// Pairs that are not checked, as if they were allowed; null: none. Their numbers are of the problem that the

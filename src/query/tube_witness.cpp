@@ -30,11 +30,9 @@ class PairAtRest {
     problem_.link_pairs = &pair_;
     problem_.num_link_pairs = 1;
     problem_.contained = asked.problem.contained;
-    query_ = engine::Query();
     query_.tolerance_time = asked.query.tolerance_time;
     query_.tolerance_distance = asked.query.tolerance_distance;
     query_.margins = engine::Margins(asked.query.margins.of(pair));
-    query_.strays = 0;
     query_.check_scene = false;
     query_.any = true;
     query_.describe_contacts = false;

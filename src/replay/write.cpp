@@ -143,9 +143,9 @@ class Recorder {
     const auto add = [&](Of of, const std::string& name, const auto& tolerance, const Eigen::Vector3d& pivot) {
       record_.tolerances.push_back({of, name, tolerance.angle, tolerance.length, pivot});
     };
-    if (all.angle > 0 || all.length > 0) add(Of::joints, {}, all, Eigen::Vector3d::Zero());
+    if (all.any()) add(Of::joints, {}, all, Eigen::Vector3d::Zero());
     for (const auto& [name, own] : tolerances.ofJoints()) add(Of::joint, name, own, Eigen::Vector3d::Zero());
-    if (base.angle > 0 || base.length > 0) add(Of::base, {}, base, base.pivot);
+    if (base.any()) add(Of::base, {}, base, base.pivot);
     for (const auto& [name, own] : tolerances.ofObjects()) add(Of::object, name, own, own.pivot);
   }
 

@@ -6,25 +6,17 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "numerics/shown.h"
+#include "numerics/require.h"
 
 namespace fcl_artic {
-namespace {
-
-void requireMargin(double margin, const std::string& of) {
-  if (std::isfinite(margin) && margin >= 0) return;
-  throw std::invalid_argument("the margin of " + of + " is " + shown(margin) + ", not a number >= 0");
-}
-
-}  // namespace
 
 void NamedMargins::set(const std::string& body, double margin) {
-  requireMargin(margin, "'" + body + "'");
+  requireNotNegative(margin, "the margin of '" + body + "'");
   of_body_[body] = margin;
 }
 
 void NamedMargins::set(const std::string& a, const std::string& b, double margin) {
-  requireMargin(margin, "'" + a + "' and '" + b + "'");
+  requireNotNegative(margin, "the margin of '" + a + "' and '" + b + "'");
   of_pair_[std::minmax(a, b)] = margin;
 }
 

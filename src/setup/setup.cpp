@@ -69,25 +69,23 @@ double Setup::strayOf(const engine::LinkPair& pair) const {
   if (pair.a >= static_cast<std::int32_t>(num_links_))
     return kInfinity;  // an obstacle that moves: the base strays, too
   struct Step {
-    double stray, length;
-    bool turns;
+    double chord, length;
   };
   std::vector<Step> steps;  // B's first
   for (std::int32_t i = pair.step_b; i >= 0; i = sweep.steps[i].parent) {
     const engine::SweepStep& step = sweep.steps[i];
-    const bool turns = step.kind == engine::StepKind::revolute || step.kind == engine::StepKind::turn;
-    steps.push_back({step.stray, step.length, turns});
-    if (!turns) return kInfinity;  // a motion may go beyond its limits
+    if (!engine::turns(step.kind)) return kInfinity;  // a motion may go beyond its limits
+    steps.push_back({std::min(step.stray, 2.0), step.length});
   }
   std::vector<double> moves_a(steps.size() + 1, 0);  // entry k: by the steps from k on, if they move A
   double reach_a = pair.inverse_a.length + a.tree->extent;
   for (std::size_t k = steps.size(); k-- > 0;) {
     reach_a += steps[k].length;
-    moves_a[k] = moves_a[k + 1] + std::min(steps[k].stray, 2.0) * reach_a;
+    moves_a[k] = moves_a[k + 1] + steps[k].chord * reach_a;
   }
   double reach_b = pair.placement_b.length + b.tree->extent, moves_b = 0, least = moves_a[0];
   for (std::size_t k = 0; k < steps.size(); ++k) {
-    moves_b += std::min(steps[k].stray, 2.0) * reach_b;
+    moves_b += steps[k].chord * reach_b;
     reach_b += steps[k].length;
     least = std::min(least, moves_b + moves_a[k + 1]);
   }

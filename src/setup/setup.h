@@ -59,10 +59,9 @@ class Setup {
   /// The same of its rows of movers.
   std::int32_t numSelfRows() const { return static_cast<std::int32_t>(link_movers_.num_self_rows); }
   /// How far variables stray, for those who look at ranges of them.
-  /// @param times  engine::Query::strays
-  VariableStrays variableStrays(double times) const {
+  VariableStrays variableStrays() const {
     const std::vector<double>& of = strays_.of_robot.of_variable;
-    return {of.empty() ? nullptr : of.data(), times};
+    return {of.empty() ? nullptr : of.data()};
   }
   /// Whether the robot or an obstacle strays.
   bool strays() const { return strays_.any; }

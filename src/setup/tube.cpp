@@ -3,21 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
 
 #include "numerics/constants.h"
-#include "numerics/shown.h"
+#include "numerics/require.h"
 
 namespace fcl_artic {
 namespace {
-
-void requireNumber(double x, const std::string& what) {
-  if (std::isfinite(x) && x >= 0) return;
-  throw std::invalid_argument(what + " is " + shown(x) + ", not a number >= 0");
-}
 
 bool turns(JointType type) {
   return type != JointType::fixed && type != JointType::prismatic;
@@ -32,15 +26,10 @@ JointTolerance restrictTo(JointType type, const JointTolerance& tolerance) {
 }
 
 void requirePose(const PoseTolerance& tolerance, const std::string& of) {
-  requireNumber(tolerance.length, "the length of the tolerance of " + of);
-  requireNumber(tolerance.angle, "the angle of the tolerance of " + of);
+  requireNotNegative(tolerance.length, "the length of the tolerance of " + of);
+  requireNotNegative(tolerance.angle, "the angle of the tolerance of " + of);
   if (!tolerance.pivot.allFinite())
     throw std::invalid_argument("the pivot of the tolerance of " + of + " is not finite");
-}
-
-template <class Tolerance>
-bool strays(const Tolerance& tolerance) {
-  return tolerance.angle > 0 || tolerance.length > 0;
 }
 
 const Joint& jointNamed(const KinematicTree& tree, const std::string& name, const std::string& what) {
@@ -65,15 +54,15 @@ void requireFits(const Joint& joint, const JointTolerance& tolerance, const std:
 }  // namespace
 
 void NamedTolerances::setAllJoints(const JointTolerance& tolerance) {
-  requireNumber(tolerance.angle, "the angle of the joints' tolerance");
-  requireNumber(tolerance.length, "the length of the joints' tolerance");
+  requireNotNegative(tolerance.angle, "the angle of the joints' tolerance");
+  requireNotNegative(tolerance.length, "the length of the joints' tolerance");
   of_all_joints_ = tolerance;
 }
 
 void NamedTolerances::setJoint(const KinematicTree& tree, const std::string& name, const JointTolerance& tolerance,
                                const std::string& what) {
-  requireNumber(tolerance.angle, "the angle of the tolerance of '" + name + "'");
-  requireNumber(tolerance.length, "the length of the tolerance of '" + name + "'");
+  requireNotNegative(tolerance.angle, "the angle of the tolerance of '" + name + "'");
+  requireNotNegative(tolerance.length, "the length of the tolerance of '" + name + "'");
   requireFits(jointNamed(tree, name, what), tolerance, what);
   of_joint_[name] = tolerance;
 }
@@ -100,30 +89,9 @@ void NamedTolerances::keep(const std::function<bool(const std::string& name)>& i
 
 bool NamedTolerances::any() const {
   const auto anyOf = [](const auto& named) {
-    return std::any_of(named.begin(), named.end(), [](const auto& entry) { return strays(entry.second); });
+    return std::any_of(named.begin(), named.end(), [](const auto& entry) { return entry.second.any(); });
   };
-  return strays(of_all_joints_) || strays(of_base_) || anyOf(of_joint_) || anyOf(of_object_);
-}
-
-std::string NamedTolerances::text() const {
-  std::string all;
-  const auto add = [&](const std::string& name, double angle, double length) {
-    if (!(angle > 0) && !(length > 0)) return;
-    all += (all.empty() ? "" : ", ") + name;
-    char text[64];
-    const auto write = [&](double value, const char* unit) {
-      std::snprintf(text, sizeof text, " %.6g %s", value, unit);
-      all += text;
-    };
-    if (length > 0) write(1000 * length, "mm");
-    if (length > 0 && angle > 0) all += " and";
-    if (angle > 0) write(angle * 57.29577951308232, "deg");
-  };
-  add(of_joint_.empty() ? "joints" : "other joints", of_all_joints_.angle, of_all_joints_.length);
-  for (const auto& [name, own] : of_joint_) add("'" + name + "'", own.angle, own.length);
-  add("base", of_base_.angle, of_base_.length);
-  for (const auto& [name, own] : of_object_) add("'" + name + "'", own.angle, own.length);
-  return all;
+  return of_all_joints_.any() || of_base_.any() || anyOf(of_joint_) || anyOf(of_object_);
 }
 
 TreeStrays NamedTolerances::straysOf(const KinematicTree& tree) const {
@@ -143,10 +111,10 @@ TreeStrays NamedTolerances::straysOf(const KinematicTree& tree) const {
     JointTolerance& own = of_joint[static_cast<std::size_t>(j)];
     if (!joint.mimics) {
       own = ownOf(joint);
-      any = any || strays(own);
+      any = any || own.any();
       const auto first = static_cast<std::size_t>(std::max(tree.jointVariable(j), 0));
       const auto count = static_cast<std::size_t>(tree.numVariables(j));
-      for (std::size_t k = 0; k < count && strays(own); ++k) {
+      for (std::size_t k = 0; k < count && own.any(); ++k) {
         of_variable[first + k] = count == 1 ? own.angle + own.length : std::numeric_limits<double>::infinity();
       }
     }
@@ -170,8 +138,7 @@ double NamedTolerances::strayOf(const std::string& object, const ShapeTree& shap
   if (found == of_object_.end()) return 0;
   const PoseTolerance& tolerance = found->second;
   if (tolerance.angle == 0) return tolerance.length;
-  // The root's box holds the geometry. The chord of an angle is no longer than the angle. It is no longer than 2
-  // either, but that does not count here: a query may take a part of a large angle (engine::Query::strays).
+  // The root's box holds the geometry, and the chord of an angle is no longer than the angle.
   const engine::Node& root = shape.view().nodes[0];
   const auto corner = [&](const float* ends) -> Eigen::Array3d {
     return (Eigen::Vector3f::Map(ends).cast<double>() - tolerance.pivot).array().abs();

@@ -45,8 +45,6 @@ class NamedTolerances {
 
   /// Some joint or object strays.
   bool any() const;
-  /// For people: all of them in one line; empty if there is none.
-  std::string text() const;
   /// @throws std::invalid_argument: a joint with a tolerance is in the tree no more, or is another one by now.
   TreeStrays straysOf(const KinematicTree& tree) const;
   /// Upper bound of how far any point of an object's geometry may be from where the object's pose puts it, m.

@@ -12,13 +12,6 @@ namespace verify::test {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Where one world of the tube is off the motion.
-struct Errors {
-  std::vector<double> of_variable;
-  std::map<int, M> of_rotation, of_frame;  // by variable, by frame
-  std::vector<M> of_body;                  // in the geometry's coordinates
-};
-
 /// A rotation by `angle` about a random axis.
 inline M anyTurn(Rng& rng, double angle) {
   return rotationAbout({uniform(rng, -1, 1), uniform(rng, -1, 1), uniform(rng, -1, 1)}, angle);
@@ -58,39 +51,7 @@ inline Errors anyErrors(Rng& rng, const World& world) {
 /// The bodies of a motion where they are at a time, with errors.
 inline std::vector<M> bodiesWith(const World& world, const Motion& motion, std::size_t piece, double t,
                                  const Errors& errors) {
-  const Sampler sampler(world, motion);
-  const auto q = [&](int v) { return sampler.q(piece, v, t); };
-  std::vector<M> frames(1);
-  for (std::size_t f = 1; f < world.frames.size(); ++f) {
-    const Frame& frame = world.frames[f];
-    M m = frames[static_cast<std::size_t>(frame.parent)] * Sampler::stated(frame.numbers);
-    if (const auto e = errors.of_frame.find(static_cast<int>(f)); e != errors.of_frame.end()) m = m * e->second;
-    for (const Element& e : frame.elements) {
-      const V axis{e.axis[0], e.axis[1], e.axis[2]};
-      if (e.kind == Element::rotate) {
-        const V w{q(e.variable), q(e.variable + 1), q(e.variable + 2)};
-        m = m * rotationAbout(w, norm(w));
-        const auto& orientations = motion.pieces[piece].orientations;
-        if (const auto o = orientations.find(e.variable); o != orientations.end()) {
-          M r;
-          r.R = o->second;
-          m = m * r;
-        }
-        if (const auto d = errors.of_rotation.find(e.variable); d != errors.of_rotation.end()) m = m * d->second;
-        continue;
-      }
-      const double x =
-          e.multiplier * (q(e.variable) + errors.of_variable[static_cast<std::size_t>(e.variable)]) + e.offset;
-      if (e.kind == Element::turn) m = m * rotationAbout(axis, x);
-      if (e.kind == Element::slide) m.t = m.t + turn(m, (x / norm(axis)) * axis);
-    }
-    frames.push_back(m);
-  }
-  std::vector<M> all;
-  for (std::size_t b = 0; b < world.bodies.size(); ++b)
-    all.push_back(frames[static_cast<std::size_t>(world.bodies[b].frame)] * Sampler::stated(world.bodies[b].numbers) *
-                  errors.of_body[b]);
-  return all;
+  return Sampler(world, motion, &errors).bodies(piece, t);
 }
 
 /// A ball around the geometry's own origin that holds it; of one without bounds 1e9.

@@ -198,10 +198,19 @@ inline Verdict judge(const World& world, const std::string& motion, const std::s
   return judge(world, record(motion, nodes));
 }
 
+/// Where one world of the tube is off the motion.
+struct Errors {
+  std::vector<double> of_variable;
+  std::map<int, M> of_rotation, of_frame;  // by variable, by frame
+  std::vector<M> of_body;                  // in the geometry's coordinates
+};
+
 /// The bodies of a motion where they are at a time, in doubles.
 class Sampler {
  public:
-  Sampler(const World& world, const Motion& motion) : world(world), motion(motion) {}
+  /// @param errors  that the bodies have against the motion; null: none.
+  Sampler(const World& world, const Motion& motion, const Errors* errors = nullptr)
+      : world(world), motion(motion), errors(errors) {}
   double q(std::size_t piece, int v, double t) const {
     const auto& polynomials = motion.pieces[piece].polynomials;
     const auto p = polynomials.find(v);
@@ -215,6 +224,7 @@ class Sampler {
     for (std::size_t f = 1; f < world.frames.size(); ++f) {
       const Frame& frame = world.frames[f];
       M m = all[static_cast<std::size_t>(frame.parent)] * stated(frame.numbers);
+      if (errors) m = withError(m, errors->of_frame, static_cast<int>(f));
       for (const Element& e : frame.elements) {
         const V axis{e.axis[0], e.axis[1], e.axis[2]};
         if (e.kind == Element::rotate) {
@@ -226,9 +236,11 @@ class Sampler {
             r.R = o->second;
             m = m * r;
           }
+          if (errors) m = withError(m, errors->of_rotation, e.variable);
           continue;
         }
-        const double x = e.multiplier * q(piece, e.variable, t) + e.offset;
+        const double error = errors ? errors->of_variable[static_cast<std::size_t>(e.variable)] : 0;
+        const double x = e.multiplier * (q(piece, e.variable, t) + error) + e.offset;
         if (e.kind == Element::turn) m = m * rotationAbout(axis, x);
         if (e.kind == Element::slide) m.t = m.t + turn(m, (x / norm(axis)) * axis);
       }
@@ -240,6 +252,7 @@ class Sampler {
     const std::vector<M> f = frames(piece, t);
     std::vector<M> all;
     for (const Body& body : world.bodies) all.push_back(f[static_cast<std::size_t>(body.frame)] * stated(body.numbers));
+    for (std::size_t b = 0; errors && b < all.size(); ++b) all[b] = all[b] * errors->of_body[b];
     return all;
   }
   static M stated(const double n[12]) {
@@ -250,6 +263,13 @@ class Sampler {
   }
   const World& world;
   const Motion& motion;
+  const Errors* errors;
+
+ private:
+  static M withError(const M& m, const std::map<int, M>& of, int number) {
+    const auto error = of.find(number);
+    return error == of.end() ? m : m * error->second;
+  }
 };
 
 /// The farthest point of a geometry's pieces [i, j) along n, in its own coordinates.

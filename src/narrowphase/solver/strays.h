@@ -16,7 +16,7 @@ class Strays : PartOfSolver {
   Strays(Task& task, SweptFrames& frames) : PartOfSolver(task), frames_(frames) {}
 
   /// Whether anything strays in the query at hand.
-  bool any() const { return problem().strays && query().strays > 0; }
+  bool any() const { return problem().strays; }
   /// Bounds what a pair's two bodies stray against each other. The tube is valid until the next one is asked for.
   void between(PairId pair, double pose_error, Tube& tube);
   /// To be called before inWorld(), when the batch is set.
@@ -27,12 +27,12 @@ class Strays : PartOfSolver {
   /// @param in_world  inWorld() of both, summed.
   double ofLinks(int link_pair, double in_world) const {
     if (!any()) return 0;
-    return min(max(query().strays, 1.0) * problem().link_pairs[link_pair].stray, in_world);
+    return min(problem().link_pairs[link_pair].stray, in_world);
   }
   /// How far an obstacle's own pose strays.
-  double ofObstacle(int body_number) const { return any() ? query().strays * body(body_number).stray : 0; }
+  double ofObstacle(int body_number) const { return any() ? body(body_number).stray : 0; }
   /// No obstacle's is larger.
-  double largest() const { return any() ? query().strays * problem().largest_stray : 0; }
+  double largest() const { return any() ? problem().largest_stray : 0; }
 
  private:
   /// A segment grown by a ball: it holds a body.
@@ -90,14 +90,9 @@ class Strays : PartOfSolver {
   Buffer<Form> forms_;  ///< by step of the world's sweep
 };
 
-inline bool turns(const engine::SweepStep& step) {
-  return step.kind == engine::StepKind::revolute || step.kind == engine::StepKind::turn;
-}
-
 inline double Strays::strayOf(const engine::SweepStep& step) const {
   // The chord of an angle is no longer than the angle, and no longer than 2.
-  const double stray = query().strays * step.stray;
-  return turns(step) ? min(stray, 2.0) : stray;
+  return turns(step.kind) ? min(step.stray, 2.0) : step.stray;
 }
 
 /// @param R, t  of the body's tree in the frame that the outline is wanted in.
@@ -170,7 +165,7 @@ inline Strays::Sums Strays::ofSteps(const Chain& chain) {
     const double rate = last.rates.a * (1 + slack) - here.rates.a;
     const double lever = last.length * (1 + slack) - here.length + b.reach;
     const double speed = rate * lever + (last.slide_rate * (1 + slack) - here.slide_rate);
-    add(step, turns(step) ? distance(step, frames_.of(chain.sweep, i), ends_b, b.radius, speed, chain.error) : one,
+    add(step, turns(step.kind) ? distance(step, frames_.of(chain.sweep, i), ends_b, b.radius, speed, chain.error) : one,
         all_b_);
     way_.push(i);
     sums_b_.push(all_b_);
@@ -183,7 +178,8 @@ inline Strays::Sums Strays::ofSteps(const Chain& chain) {
     const StepBounds& here = frames_.bounds(chain.sweep, way_[k]);
     const double speed = before.rates.a * (here.length + a->reach) + here.slide_rate;
     add(step,
-        turns(step) ? distance(step, frames_.of(chain.sweep, way_[k]), ends_a, a->radius, speed, chain.error) : one,
+        turns(step.kind) ? distance(step, frames_.of(chain.sweep, way_[k]), ends_a, a->radius, speed, chain.error)
+                         : one,
         all_a_);
     const Sums beyond = k ? sums_b_[k - 1] : Sums{Lanes(0.0), Lanes(0.0)};
     least.middle = min(least.middle, beyond.middle + all_a_.middle);
@@ -214,11 +210,11 @@ inline void Strays::direct(const Chain& chain, const Placement& inverse_a, const
   double angles = others.angle, strays = 0, slides = 0;
   for (int k = 0; k < way_.size(); ++k) {
     const engine::SweepStep& step = view.steps[way_[k]];
-    const double s = query().strays * step.stray;
+    const double s = step.stray;
     const FrameLanes& frame = frames_.of(chain.sweep, way_[k]);
     TubeAxis& axis = axes_.grow();
     axis.stray = s;
-    axis.slides = !turns(step);
+    axis.slides = !turns(step.kind);
     axis.origin = R * frame.o + spread(t);
     axis.axis = R * frame.R.column(2);
     (axis.slides ? slides : strays) += s;
@@ -271,9 +267,9 @@ inline double Strays::ofBase(const Body& link) {
       ulps += bounds.ulps;
     }
     const double far = maxLane(sqrt(square)) + outline.radius + way + kUlp * (ulps + kPoseUlps) * sizes;
-    stray += min(query().strays * base.angle, 2.0) / query().strays * far;
+    stray += min(base.angle, 2.0) * far;
   }
-  return query().strays * stray * (1 + 16 * kUlp);
+  return stray * (1 + 16 * kUlp);
 }
 
 inline void Strays::between(PairId pair, double pose_error, Tube& tube) {
@@ -292,10 +288,10 @@ inline void Strays::between(PairId pair, double pose_error, Tube& tube) {
   const bool both = !base && (!problem().isScenePair(pair) || a.radius < b.radius);
   const Chain chain = {parts.sweep, parts.step_b, both ? &a : nullptr, b, pose_error};
   const Sums least = ofSteps(chain);
-  const double poses = (query().strays * (A.stray + B.stray) + (base ? ofBase(B) : 0)) * (1 + 8 * kUlp);
+  const double poses = (A.stray + B.stray + (base ? ofBase(B) : 0)) * (1 + 8 * kUlp);
   tube.middle = least.middle + Lanes(poses);
   tube.over = (maxLane(least.over) + poses) * (1 + 2 * kUlp);
-  direct(chain, *parts.inverse_a, {poses, base ? query().strays * problem().base.angle : 0}, tube);
+  direct(chain, *parts.inverse_a, {poses, base ? problem().base.angle : 0}, tube);
 }
 
 inline void Strays::begin() {
@@ -321,7 +317,7 @@ inline const Strays::Form& Strays::formOf(int step) {
     ++form.count;
     if (!(own.stray > 0)) continue;
     const double s = strayOf(own);
-    if (!turns(own)) {
+    if (!turns(own.kind)) {
       form.slides += s;
       continue;
     }
@@ -373,7 +369,7 @@ inline double Strays::inWorld(const Body& link) {
     const double rounding = 64 * form.count * kUlp * form.strays * (last.rates.a * lever + last.slide_rate);
     of_steps = root + form.strays * outline.radius + form.slides + frames_.batch().d * (speeds + rounding);
   }
-  return (of_steps + query().strays * link.stray + ofBase(link)) * (1 + 32 * kUlp);
+  return (of_steps + link.stray + ofBase(link)) * (1 + 32 * kUlp);
 }
 
 }  // namespace FCL_ARTIC_ISA

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "numerics/shown.h"
+
+namespace fcl_artic {
+
+/// @throws std::invalid_argument, "WHAT is X, not a number >= 0", for a number that is negative or not finite.
+inline void requireNotNegative(double x, const std::string& what) {
+  if (std::isfinite(x) && x >= 0) return;
+  throw std::invalid_argument(what + " is " + shown(x) + ", not a number >= 0");
+}
+
+}  // namespace fcl_artic
