@@ -4,15 +4,17 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "numerics/shown.h"
 
 namespace fcl_artic {
 
+/// (Queries call it: it allocates nothing for a good number.)
 /// @throws std::invalid_argument, "WHAT is X, not a number >= 0", for a number that is negative or not finite.
-inline void requireNotNegative(double x, const std::string& what) {
+inline void requireNotNegative(double x, std::string_view what) {
   if (std::isfinite(x) && x >= 0) return;
-  throw std::invalid_argument(what + " is " + shown(x) + ", not a number >= 0");
+  throw std::invalid_argument(std::string(what) + " is " + shown(x) + ", not a number >= 0");
 }
 
 }  // namespace fcl_artic
