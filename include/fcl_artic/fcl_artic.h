@@ -11,6 +11,7 @@
 #include "fcl_artic/continuous_collision.h"
 #include "fcl_artic/continuous_manager.h"
 #include "fcl_artic/fcl_link_motion.h"
+#include "fcl_artic/guard.h"
 #include "fcl_artic/in_between.h"
 #include "fcl_artic/instruction_set.h"
 #include "fcl_artic/interpolation.h"

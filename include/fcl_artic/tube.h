@@ -31,4 +31,13 @@ struct PoseTolerance {
   bool any() const { return angle > 0 || length > 0; }
 };
 
+/// How fast an object may move by itself, in any direction and along any path, as a person does.
+struct ObjectSpeed {
+  /// m per unit of the motion's time, finite, at least 0. A trajectory's unit is mostly a second; a JointMotion, and a
+  /// query at one configuration, take 1 unit.
+  double speed = 0;
+  /// Time from which on it may move, after the motion's begin; finite. Negative: it was seen so long before.
+  double since = 0;
+};
+
 }  // namespace fcl_artic

@@ -16,6 +16,8 @@ struct ExactMotion {
   /// @throws std::invalid_argument as JointMotion::polynomial() and tangentHalfAnglePolynomial().
   static JointMotion motion(const KinematicTree& tree, const Eigen::MatrixXd& coefficients,
                             const Eigen::VectorXd& references);
+  /// The variables of a motion, to be made those of a part of it.
+  static Eigen::MatrixXd& variables(JointMotion& motion) { return motion.variables_; }
   /// @param pieces  over t in [0, 1] each.
   /// @throws std::invalid_argument as JointTrajectory::piecewise().
   static JointTrajectory trajectory(const KinematicTree& tree, const std::vector<double>& times,

@@ -31,6 +31,8 @@ struct Body {
   const SurfacePoints* points = nullptr;  ///< of any body, where a mesh is a solid
   /// m: each of its points may be this far from where the body's pose puts it.
   double stray = 0;
+  /// From the time `since` on (Clock) each of its points may move away from there at this speed, m per unit of time.
+  double speed = 0, since = 0;
   /// Still bodies: axis-aligned box in the world.
   double lo[3] = {}, hi[3] = {};
 };
@@ -104,16 +106,17 @@ struct Problem : PairNumbering {
   std::int32_t num_link_pairs = 0;
   const MoverRow* mover_rows = nullptr;  ///< all link pairs again, by movers: most are done with once these are seen
   std::int32_t num_mover_rows = 0;
-  std::int32_t first_in_rows = 0;               ///< what rows call link pair 0
-  const std::uint8_t* link_allowed = nullptr;   ///< per link pair: 1 = may touch; null: none may
-  const std::uint8_t* scene_allowed = nullptr;  ///< per scene pair: 1 = may touch; null: none may
-  std::int32_t num_scene_allowed = 0;           ///< scene pairs that may touch
-  const std::int32_t* obstacles = nullptr;      ///< body of obstacle o
-  const StillBounds* still_bounds = nullptr;    ///< of obstacle o
-  const WideNode* obstacle_tree = nullptr;      ///< boxes in the world; leaf piece = obstacle; null when there is none
-  bool strays = false;                          ///< a step, a body or the base strays
-  BaseStray base;                               ///< against all that is no link
-  double largest_stray = 0;                     ///< of bodies
+  std::int32_t first_in_rows = 0;                ///< what rows call link pair 0
+  const std::uint8_t* link_allowed = nullptr;    ///< per link pair: 1 = may touch; null: none may
+  const std::uint8_t* scene_allowed = nullptr;   ///< per scene pair: 1 = may touch; null: none may
+  std::int32_t num_scene_allowed = 0;            ///< scene pairs that may touch
+  const std::int32_t* obstacles = nullptr;       ///< body of obstacle o
+  const StillBounds* still_bounds = nullptr;     ///< of obstacle o
+  const WideNode* obstacle_tree = nullptr;       ///< boxes in the world; leaf piece = obstacle; null when there is none
+  bool strays = false;                           ///< a step, a body or the base strays
+  BaseStray base;                                ///< against all that is no link
+  double largest_stray = 0;                      ///< of bodies
+  double largest_speed = 0, earliest_since = 0;  ///< the same
   /// Where a mesh is a solid: asked of each pair with one, at a pose. Null: all meshes are surfaces.
   void (*contained)(const Body& a, const Body& b, const PairPose& pose, ContainmentVerdict& found) = nullptr;
 

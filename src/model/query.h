@@ -23,11 +23,18 @@ struct HalfAngles {
   [[gnu::always_inline]] bool has(std::int32_t variable) const { return variable < count && is[variable] != 0; }
 };
 
+/// The time that bodies have had to move by themselves (Body::speed), linear in the query's t and never less later: at
+/// t = 0 and at t = 1.
+struct Clock {
+  double begin = 0, end = 1;
+};
+
 struct Query {
   /// Variable v at time t: sum over k of coefficients[k * num_variables + v] t^k, for k = 0..degree (at least 1).
   const double* coefficients = nullptr;
   std::int32_t num_variables = 0, degree = 1;
   HalfAngles half_angles;
+  Clock clock;
   const double* orientations = nullptr;  ///< rotations R0 of turns, row-major, nine numbers each
   double tolerance_time = 1e-6, tolerance_distance = 1e-6;
   Margins margins;

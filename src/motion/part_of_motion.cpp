@@ -7,14 +7,18 @@
 
 namespace fcl_artic {
 
-Eigen::MatrixXd partOf(const Eigen::MatrixXd& coefficients, const TimePart& part) {
-  Eigen::MatrixXd out = coefficients;
-  const Eigen::Index degree = out.cols() - 1;
+void takePart(const TimePart& part, Eigen::MatrixXd& coefficients) {
+  const Eigen::Index degree = coefficients.cols() - 1;
   for (Eigen::Index i = 0; i < degree; ++i) {  // Taylor's shift by repeated division
-    for (Eigen::Index k = degree - 1; k >= i; --k) out.col(k) += part.begin * out.col(k + 1);
+    for (Eigen::Index k = degree - 1; k >= i; --k) coefficients.col(k) += part.begin * coefficients.col(k + 1);
   }
   double power = 1;
-  for (Eigen::Index k = 1; k <= degree; ++k) out.col(k) *= power *= part.width();
+  for (Eigen::Index k = 1; k <= degree; ++k) coefficients.col(k) *= power *= part.width();
+}
+
+Eigen::MatrixXd partOf(const Eigen::MatrixXd& coefficients, const TimePart& part) {
+  Eigen::MatrixXd out = coefficients;
+  takePart(part, out);
   return out;
 }
 

@@ -22,7 +22,9 @@ struct TimePart {
   double at(double t) const { return t >= 1 ? end : begin + t * width(); }
 };
 
-/// Polynomials (one a row, column k for t^k) over a part of their time.
+/// Polynomials (one a row, column k for t^k) over a part of their time, in place of those over the whole.
+void takePart(const TimePart& part, Eigen::MatrixXd& coefficients);
+/// The same, elsewhere.
 Eigen::MatrixXd partOf(const Eigen::MatrixXd& coefficients, const TimePart& part);
 
 /// How far a computed part of an element's motion can be from the true one: an angle (rad) and a length, in 2^-52.

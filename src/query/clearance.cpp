@@ -35,13 +35,11 @@ void require(bool good, const char* name, double value, const char* what) {
 using Pairs = std::vector<engine::PairId>;
 
 /// The pairs that a query ignores.
-/// @param time  that the query takes.
+/// @param context  of the query.
 /// @param collide  asks it.
 template <class Context, class Collide>
-Pairs pairsIgnored(const TimePart& time, const Collide& collide) {
+Pairs pairsIgnored(Context context, const Collide& collide) {
   typename Context::Details details;
-  Context context;
-  context.time = time;
   context.details = &details;
   collide(context);
   Pairs pairs;
@@ -161,8 +159,8 @@ Clearance ArticulatedCollisionManager::clearance(const JointMotion& motion, cons
     collideMotion(motion, asked, QueryContext::ofClearance(left_out), result);
   };
   const auto ask_begin = [&](const CertifiedRequest& asked, CertifiedResult& result) {
-    return pairsIgnored<QueryContext>(
-        TimePart(), [&](const QueryContext& context) { collideMotion(motion, asked, context, result); });
+    return pairsIgnored(QueryContext(),
+                        [&](const QueryContext& context) { collideMotion(motion, asked, context, result); });
   };
   return Search(request, 1, ask, ask_begin).run();
 }
@@ -174,9 +172,10 @@ Clearance ArticulatedCollisionManager::clearance(const JointTrajectory& trajecto
     collideTrajectory(trajectory, asked, QueryContext::ofClearance(left_out), result);
   };
   const auto ask_begin = [&](const CertifiedRequest& asked, CertifiedResult& result) {
-    return pairsIgnored<QueryContext>(partOfTime(trajectory, 0), [&](const QueryContext& context) {
-      collideMotion(trajectory.piece(0), asked, context, result);
-    });
+    QueryContext first;
+    first.setPiece(trajectory, 0);
+    return pairsIgnored(
+        first, [&](const QueryContext& context) { collideMotion(trajectory.piece(0), asked, context, result); });
   };
   return Search(request, trajectory.endTime() - trajectory.beginTime(), ask, ask_begin).run();
 }

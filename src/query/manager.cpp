@@ -61,6 +61,21 @@ ArticulatedCollisionManager ArticulatedCollisionManager::shareRobot() const {
   return other;
 }
 
+ArticulatedCollisionManager ArticulatedCollisionManager::copy() const {
+  ArticulatedCollisionManager other(impl_->registry.tree());
+  other.impl_->registry = impl_->registry;
+  other.impl_->setup = impl_->setup;
+  other.impl_->setup.obstaclesChanged();  // a set-up refers to its own parts
+  other.impl_->culler = impl_->culler;
+  return other;
+}
+
+void ArticulatedCollisionManager::replaceObject(const std::string& name,
+                                                const ObjectRef<fcl::CollisionObjectd>& object) {
+  impl_->registry.replaceObject(name, object);
+  impl_->setup.obstaclesChanged();
+}
+
 void ArticulatedCollisionManager::unregisterObject(const ObjectRef<fcl::CollisionObjectd>& object) {
   const bool carried = impl_->registry.unregisterObject(object.get());
   carried ? impl_->setup.robotChanged() : impl_->setup.obstaclesChanged();
@@ -152,6 +167,15 @@ void ArticulatedCollisionManager::setObjectTolerance(const std::string& name, co
   impl_->setup.tolerancesChanged();
 }
 
+void ArticulatedCollisionManager::setObjectSpeed(const std::string& name, const ObjectSpeed& speed) {
+  impl_->registry.setObjectSpeed(name, speed);
+  impl_->setup.tolerancesChanged();
+}
+
+bool ArticulatedCollisionManager::hasSpeeds() const {
+  return impl_->registry.tolerances().anySpeed();
+}
+
 void ArticulatedCollisionManager::resetTolerances() {
   impl_->registry.resetTolerances();
   impl_->setup.tolerancesChanged();
@@ -176,6 +200,12 @@ std::string ArticulatedCollisionManager::describeTolerances() const {
   for (const auto& [name, own] : tolerances.ofJoints()) add("'" + name + "'", own);
   add("base", tolerances.base());
   for (const auto& [name, own] : tolerances.ofObjects()) add("'" + name + "'", own);
+  for (const auto& [name, own] : tolerances.speeds()) {
+    if (!(own.speed > 0)) continue;
+    char text[96];
+    std::snprintf(text, sizeof text, "' moving at up to %.6g m per unit of time from %.6g on", own.speed, own.since);
+    all += (all.empty() ? "'" : ", '") + name + text;
+  }
   return all;
 }
 

@@ -53,6 +53,9 @@ struct ArticulatedCollisionManager::Impl {
   void appendClaim(const JointMotion& motion, const TimePart& time, const CertifiedRequest& request,
                    const Bracket& answer, const QueryContext::Details& details, certificate::Claim& claim) const;
 
+  /// Notes the pairs whose initial contacts were ignored, and what the context asks for.
+  void noteBeside(const engine::Answer& answer, const QueryContext& context, CertifiedResult& result) const;
+
   /// Adds what an answer has beyond the solver's: its certificate, allowed pairs, no more contacts than asked for.
   /// @param details  of the answer; read where the request asks for a certificate.
   void finishAnswer(const JointMotion& motion, const CertifiedRequest& request, const QueryContext::Details& details,

@@ -196,6 +196,29 @@ void ArticulatedCollisionManager::Impl::appendClaim(const JointMotion& motion, c
   claim.pieces.push_back(std::move(stated));
 }
 
+void ArticulatedCollisionManager::Impl::noteBeside(const engine::Answer& answer, const QueryContext& context,
+                                                   CertifiedResult& result) const {
+  result.never_apart_pairs = engine::numNeverApart(answer);
+  result.ignored_initial_contacts.clear();
+  for (std::int32_t i = 0; i < answer.num_ignored; ++i) {
+    result.ignored_initial_contacts.emplace_back(registry.body(answer.ignored[i].body_a).reference(),
+                                                 registry.body(answer.ignored[i].body_b).reference());
+  }
+  if (context.details) {
+    context.details->ignored.assign(answer.ignored, answer.ignored + answer.num_ignored);
+    context.details->contact.reset();
+    // (With tolerances the motion itself may not touch there, and a certificate names no other.)
+    const bool touches = answer.num_contacts > 0 && answer.contacts[0].certain && !setup.strays();
+    if (touches) context.details->contact = answer.contacts[0];
+  }
+  if (context.never_apart) {
+    context.never_apart->clear();
+    for (std::int32_t i = 0; i < answer.num_ignored; ++i) {
+      if (engine::neverApart(answer.ignored[i])) context.never_apart->push_back(answer.ignored[i].pair);
+    }
+  }
+}
+
 void ArticulatedCollisionManager::Impl::finishAnswer(const JointMotion& motion, const CertifiedRequest& request,
                                                      const QueryContext::Details& details,
                                                      CertifiedResult& result) const {
@@ -235,8 +258,16 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
     throw std::invalid_argument(
         "Method::redon2004 does not know tolerances of joints, base or objects; resetTolerances() takes them away");
   }
+  if (setup.moves() && request.certificate) {
+    throw std::invalid_argument("certificates do not state that objects move by themselves (setObjectSpeed)");
+  }
   engine::Query query = makeQuery(request);
   query.check_scene = request.check_scene;
+  query.clock = context.clock;
+  if (context.limit) {
+    query.max_contacts = 1;
+    query.describe_contacts = false;
+  }
 
   using Clock = std::chrono::steady_clock;
   const auto since = [](Clock::time_point t) {
@@ -250,7 +281,8 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   (context.own_margins ? setup.margins() : setup.marginsOfNeighbours()).putInto(query.margins);
   restrictPairs(request, setup, problem, query.margins);
   if (context.left_out && !context.left_out->empty()) leaveOut(*context.left_out, *workspace, problem);
-  const VariableStrays variable_strays = setup.variableStrays();
+  const VariableStrays variable_strays =
+      context.variable_strays ? VariableStrays{context.variable_strays} : setup.variableStrays();
   TableAdvice advice{setup.tables(), setup.proven(), problem, motion, variable_strays, query.margins, *workspace};
   if (request.check_self && request.method == Method::standard) query.ask(advice.advisor());
   if (context.may_ignore) {
@@ -265,35 +297,21 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
 
   static_cast<Bracket&>(result) = answer;
   result.contacts.clear();
-  for (std::int32_t i = 0; i < answer.num_contacts; ++i) {
+  if (context.limit) {
+    context.limit->reset();
+    if (answer.num_contacts > 0) *context.limit = answer.contacts[0];
+  }
+  for (std::int32_t i = 0; i < answer.num_contacts && !context.limit; ++i) {
     result.contacts.push_back(report(registry, motion, context.time, answer.contacts[i]));
   }
-  if (setup.strays() && !result.isFree()) {
+  if (setup.strays() && !result.isFree() && !context.limit) {
     findWitnesses({problem, query, motion, context.time}, registry, variable_strays, answer, *workspace, result);
   }
   keepFirstOfEachPair(result.certain, result.contacts);
   result.M_0_at_lower.clear();
   if (!result.isFree() && request.max_contacts > 0)
     robot.forwardKinematics(motion.configuration(answer.t_lower), result.M_0_at_lower);
-  result.never_apart_pairs = engine::numNeverApart(answer);
-  result.ignored_initial_contacts.clear();
-  for (std::int32_t i = 0; i < answer.num_ignored; ++i) {
-    result.ignored_initial_contacts.emplace_back(registry.body(answer.ignored[i].body_a).reference(),
-                                                 registry.body(answer.ignored[i].body_b).reference());
-  }
-  if (context.details) {
-    context.details->ignored.assign(answer.ignored, answer.ignored + answer.num_ignored);
-    context.details->contact.reset();
-    // (With tolerances the motion itself may not touch there, and a certificate names no other.)
-    const bool touches = answer.num_contacts > 0 && answer.contacts[0].certain && !setup.strays();
-    if (touches) context.details->contact = answer.contacts[0];
-  }
-  if (context.never_apart) {
-    context.never_apart->clear();
-    for (std::int32_t i = 0; i < answer.num_ignored; ++i) {
-      if (engine::neverApart(answer.ignored[i])) context.never_apart->push_back(answer.ignored[i].pair);
-    }
-  }
+  impl_->noteBeside(answer, context, result);
   result.statistics = workOf(solved);
   if (request.measure_times) {
     result.statistics.report_us = since(end);

@@ -10,6 +10,7 @@
 #include "fcl_artic/manager.h"
 #include "fcl_artic/trajectory.h"
 #include "model/answer.h"
+#include "model/query.h"
 #include "motion/part_of_motion.h"
 
 namespace fcl_artic {
@@ -26,6 +27,7 @@ inline TimePart partOfTime(const JointTrajectory& trajectory, std::size_t piece)
 /// Settings beyond the request of a query of one motion, for trajectories and clearance().
 struct ArticulatedCollisionManager::QueryContext {
   TimePart time;            ///< the part of the moving obstacles' motions that the query's [0, 1] is
+  engine::Clock clock;      ///< the time that has passed since the motion's begin, in the motion's unit
   bool own_margins = true;  ///< pairs' own margins hold; false: those of neighbours alone (clearance())
   /// Pairs of the engine's problem: only their initial contacts may be ignored; null: those of all pairs may.
   const std::vector<engine::PairId>* may_ignore = nullptr;
@@ -39,7 +41,18 @@ struct ArticulatedCollisionManager::QueryContext {
     std::optional<engine::LeafContact> contact;  ///< the first contact, if it is proven
   };
   Details* details = nullptr;  ///< out
+  /// Out, for those who want no more than a bracket and the pair that limits it; null: the answer is reported in full.
+  /// The result then has no contacts, no witnesses and no poses.
+  std::optional<engine::LeafContact>* limit = nullptr;
 
+  const double* variable_strays = nullptr;  ///< rad or m, by variable, in place of the set-up's
+
+  /// The settings of a query of one piece.
+  void setPiece(const JointTrajectory& trajectory, std::size_t piece) {
+    time = partOfTime(trajectory, piece);
+    const double begin = trajectory.beginTime();
+    clock = {trajectory.times()[piece] - begin, trajectory.times()[piece + 1] - begin};
+  }
   /// The settings of a query of clearance(): pairs' own margins do not hold, but neighbours' do.
   static QueryContext ofClearance(const std::vector<engine::PairId>& left_out) {
     QueryContext context;

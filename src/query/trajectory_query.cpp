@@ -96,7 +96,7 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     if (request.work_budget) own.work_budget = request.work_budget - used;
     std::vector<engine::PairId> still_in_contact;
     QueryContext context = common;
-    context.time = partOfTime(trajectory, k);
+    context.setPiece(trajectory, k);
     context.may_ignore = k == 0 ? nullptr : &in_contact;
     context.never_apart = &still_in_contact;
     QueryContext::Details details;

@@ -117,6 +117,8 @@ class Builder {
         return manager.setBaseTolerance(of_pose);
       case ToleranceRecord::Of::object:
         return manager.setObjectTolerance(own.name, of_pose);
+      case ToleranceRecord::Of::speed:
+        return manager.setObjectSpeed(own.name, {own.speed, own.since});
     }
   }
 

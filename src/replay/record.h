@@ -226,31 +226,38 @@ void fields(A& a, MarginRecord& m) {
   a("of", m.of);
   a("margin", m.margin);
 }
-/// A tolerance that is not 0, or a joint's own.
+/// A tolerance that is not 0, or a joint's own; or the speed of an object.
 struct ToleranceRecord {
-  enum class Of { joints, joint, base, object };
+  enum class Of { joints, joint, base, object, speed };
   Of of = Of::joints;
   std::string name;  ///< of a joint or an object
   double angle = 0, length = 0;
+  double speed = 0, since = 0;
   Eigen::Vector3d pivot = Eigen::Vector3d::Zero();  ///< of a base or an object
 
   bool operator==(const ToleranceRecord& other) const {
     return of == other.of && name == other.name && angle == other.angle && length == other.length &&
-           pivot == other.pivot;
+           speed == other.speed && since == other.since && pivot == other.pivot;
   }
 };
 inline constexpr NamedValue<ToleranceRecord::Of> kToleranceKinds[] = {{ToleranceRecord::Of::joints, "joints"},
                                                                       {ToleranceRecord::Of::joint, "joint"},
                                                                       {ToleranceRecord::Of::base, "base"},
-                                                                      {ToleranceRecord::Of::object, "object"}};
+                                                                      {ToleranceRecord::Of::object, "object"},
+                                                                      {ToleranceRecord::Of::speed, "speed"}};
 constexpr const auto& namesOf(ToleranceRecord::Of) {
   return kToleranceKinds;
 }
 template <class A>
 void fields(A& a, ToleranceRecord& t) {
   a("of", t.of);
-  const bool named = t.of == ToleranceRecord::Of::joint || t.of == ToleranceRecord::Of::object;
+  const bool named = t.of != ToleranceRecord::Of::joints && t.of != ToleranceRecord::Of::base;
   if (named) a("name", t.name);
+  if (t.of == ToleranceRecord::Of::speed) {
+    a("speed", t.speed);
+    a("since", t.since);
+    return;
+  }
   a("angle", t.angle);
   a("length", t.length);
   if (t.of == ToleranceRecord::Of::base || t.of == ToleranceRecord::Of::object) a("pivot", t.pivot);

@@ -107,6 +107,12 @@ void Registry::requireBody(const std::string& name, const std::string& what) con
                               text::didYouMean(name, names));
 }
 
+void Registry::requireObject(const std::string& name, const std::string& what) const {
+  requireBody(name, what);
+  if (tree_->hasLink(name))
+    throw std::invalid_argument(what + ": '" + name + "' is a link: set its joints' tolerances");
+}
+
 /// The name as given or chosen. It must not be a link's: allowed pairs and margins go by names, so the link's would
 /// hold for the obstacle too.
 std::string Registry::obstacleName(const std::string& name) const {
@@ -315,6 +321,24 @@ void Registry::replaceObstacles(const std::vector<std::shared_ptr<const fcl::Col
   named_ = objects.size() + moving_.size();
 }
 
+void Registry::replaceObject(const std::string& name, const ObjectRef<fcl::CollisionObjectd>& object) {
+  const auto old =
+      std::find_if(obstacles_.begin(), obstacles_.end(), [&](const ManagedBody& b) { return b.name == name; });
+  if (old == obstacles_.end()) {
+    requireBody(name, "replaceObject");
+    throw std::invalid_argument("replaceObject: '" + name + "' is no obstacle that stands still");
+  }
+  if (object.get() != old->object) requireNew(object.get(), "obstacle '" + name + "'");
+  ManagedBody body;
+  body.name = name;
+  body.object = object.get();
+  body.owner = object.share();
+  body.readObstacle();
+  objects_.insert(body.object);
+  if (old->object != body.object) objects_.erase(old->object);
+  *old = std::move(body);
+}
+
 Registry Registry::withoutObstacles() const {
   Registry robot = *this;
   const auto isOfRobot = [&](const std::string& name) {
@@ -467,14 +491,6 @@ void Registry::setMargin(const std::string& a, const std::string& b, double marg
 
 void Registry::setJointTolerance(const std::string& joint, const JointTolerance& tolerance) {
   tolerances_.setJoint(*tree_, joint, tolerance, "setJointTolerance");
-}
-
-void Registry::setObjectTolerance(const std::string& name, const PoseTolerance& tolerance) {
-  requireBody(name, "setObjectTolerance");
-  if (tree_->hasLink(name)) {
-    throw std::invalid_argument("setObjectTolerance: '" + name + "' is a link: set its joints' tolerances");
-  }
-  tolerances_.setObject(name, tolerance);
 }
 
 }  // namespace fcl_artic

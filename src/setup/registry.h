@@ -83,6 +83,7 @@ class Registry {
   void registerObjects(const std::vector<fcl::CollisionObjectd*>& objects);
   void replaceObstacles(const std::vector<std::shared_ptr<const fcl::CollisionObjectd>>& objects,
                         const std::vector<std::string>& names);
+  void replaceObject(const std::string& name, const ObjectRef<fcl::CollisionObjectd>& object);
   /// A copy with the robot only. Allowed pairs and margins of obstacles' names stay behind.
   Registry withoutObstacles() const;
   /// @return whether a link carried it.
@@ -118,7 +119,14 @@ class Registry {
   void setJointTolerances(const JointTolerance& all) { tolerances_.setAllJoints(all); }
   void setJointTolerance(const std::string& joint, const JointTolerance& tolerance);
   void setBaseTolerance(const PoseTolerance& tolerance) { tolerances_.setBase(tolerance); }
-  void setObjectTolerance(const std::string& name, const PoseTolerance& tolerance);
+  void setObjectTolerance(const std::string& name, const PoseTolerance& tolerance) {
+    requireObject(name, "setObjectTolerance");
+    tolerances_.setObject(name, tolerance);
+  }
+  void setObjectSpeed(const std::string& name, const ObjectSpeed& speed) {
+    requireObject(name, "setObjectSpeed");
+    tolerances_.setSpeed(name, speed);
+  }
   void resetTolerances() { tolerances_.clear(); }
   const NamedTolerances& tolerances() const { return tolerances_; }
 
@@ -141,6 +149,7 @@ class Registry {
   void requireNew(const void* object, const std::string& what) const;
   void requireLinks() const;
   void requireBody(const std::string& name, const std::string& what) const;
+  void requireObject(const std::string& name, const std::string& what) const;
   std::string obstacleName(const std::string& name) const;
   ManagedBody newBody(const fcl::CollisionObjectd* object, const std::string& what) const;
   void addObstacle(Bodies& bodies, ManagedBody body);

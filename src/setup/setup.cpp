@@ -51,11 +51,19 @@ void Setup::setStrays(const Registry& registry) {
   for (FrameSweep& sweep : sweeps_) sweep.setStrays(strays_.of_robot.of_joint);
   const PoseTolerance& base = tolerances.base();
   strays_.base = {base.length, base.angle, {base.pivot[0], base.pivot[1], base.pivot[2]}};
-  strays_.largest = 0;
+  strays_.largest = strays_.largest_speed = strays_.earliest_since = 0;
+  strays_.moves = false;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const ManagedBody& body = registry.body(static_cast<std::int32_t>(i));
     bodies_[i].stray = body.empty() ? 0 : tolerances.strayOf(body.name, *body.shape);
     strays_.largest = std::max(strays_.largest, bodies_[i].stray);
+    const ObjectSpeed speed = body.empty() ? ObjectSpeed() : tolerances.speedOf(body.name);
+    bodies_[i].speed = speed.speed;
+    bodies_[i].since = speed.since;
+    if (!(speed.speed > 0)) continue;
+    strays_.earliest_since = strays_.moves ? std::min(strays_.earliest_since, speed.since) : speed.since;
+    strays_.largest_speed = std::max(strays_.largest_speed, speed.speed);
+    strays_.moves = true;
   }
   strays_.any = tolerances.any();
   for (engine::LinkPair& pair : link_pairs_) pair.stray = strays_.any ? strayOf(pair) : 0;
@@ -67,7 +75,8 @@ double Setup::strayOf(const engine::LinkPair& pair) const {
   const engine::SweepView sweep = sweeps_[static_cast<std::size_t>(pair.sweep)].view();
   const engine::Body &a = bodies_[static_cast<std::size_t>(pair.a)], &b = bodies_[static_cast<std::size_t>(pair.b)];
   if (pair.a >= static_cast<std::int32_t>(num_links_))
-    return kInfinity;  // an obstacle that moves: the base strays, too
+    return kInfinity;                                // an obstacle that moves: the base strays, too
+  if (a.speed > 0 || b.speed > 0) return kInfinity;  // attached objects, farther with time
   struct Step {
     double chord, length;
   };
@@ -128,6 +137,8 @@ engine::Problem Setup::problem() const {
   p.strays = strays_.any;
   p.base = strays_.base;
   p.largest_stray = strays_.largest;
+  p.largest_speed = strays_.largest_speed;
+  p.earliest_since = strays_.earliest_since;
   p.contained = solids_ ? &findContained : nullptr;
   return p;
 }

@@ -63,8 +63,12 @@ class Setup {
     const std::vector<double>& of = strays_.of_robot.of_variable;
     return {of.empty() ? nullptr : of.data()};
   }
+  /// Tolerances of the joints, in the tree's order; empty: none strays.
+  const std::vector<JointTolerance>& jointTolerances() const { return strays_.of_robot.of_joint; }
   /// Whether the robot or an obstacle strays.
   bool strays() const { return strays_.any; }
+  /// Whether an object moves by itself (ObjectSpeed).
+  bool moves() const { return strays_.moves; }
   const LinkTables& tables() const { return *tables_; }
   const ProvenPairs& proven() const { return proven_; }
   /// Variables of the moving obstacles' motions, column k for t^k. A query's own come before them.
@@ -108,8 +112,9 @@ class Setup {
   struct Strays {
     TreeStrays of_robot;
     engine::BaseStray base;
-    double largest = 0;  ///< of a body
-    bool any = false;
+    double largest = 0;                            ///< of a body
+    double largest_speed = 0, earliest_since = 0;  ///< of bodies that move by themselves
+    bool any = false, moves = false;
   };
   Strays strays_;
   PairMargins margins_, margins_of_neighbours_;

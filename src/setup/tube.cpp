@@ -77,21 +77,41 @@ void NamedTolerances::setObject(const std::string& name, const PoseTolerance& to
   of_object_[name] = tolerance;
 }
 
+void NamedTolerances::setSpeed(const std::string& name, const ObjectSpeed& speed) {
+  requireNotNegative(speed.speed, "the speed of '" + name + "'");
+  if (!std::isfinite(speed.since)) {
+    throw std::invalid_argument("the time since which '" + name + "' may move is " + shown(speed.since) +
+                                ", not a finite number");
+  }
+  speed_of_[name] = speed;
+}
+
+ObjectSpeed NamedTolerances::speedOf(const std::string& object) const {
+  const auto found = speed_of_.find(object);
+  return found == speed_of_.end() ? ObjectSpeed() : found->second;
+}
+
 void NamedTolerances::clear() {
   *this = NamedTolerances();
 }
 
 void NamedTolerances::keep(const std::function<bool(const std::string& name)>& isKept) {
-  for (auto at = of_object_.begin(); at != of_object_.end();) {
-    at = isKept(at->first) ? std::next(at) : of_object_.erase(at);
-  }
+  const auto keepIn = [&](auto& named) {
+    for (auto at = named.begin(); at != named.end();) at = isKept(at->first) ? std::next(at) : named.erase(at);
+  };
+  keepIn(of_object_);
+  keepIn(speed_of_);
+}
+
+bool NamedTolerances::anySpeed() const {
+  return std::any_of(speed_of_.begin(), speed_of_.end(), [](const auto& entry) { return entry.second.speed > 0; });
 }
 
 bool NamedTolerances::any() const {
   const auto anyOf = [](const auto& named) {
     return std::any_of(named.begin(), named.end(), [](const auto& entry) { return entry.second.any(); });
   };
-  return of_all_joints_.any() || of_base_.any() || anyOf(of_joint_) || anyOf(of_object_);
+  return anySpeed() || of_all_joints_.any() || of_base_.any() || anyOf(of_joint_) || anyOf(of_object_);
 }
 
 TreeStrays NamedTolerances::straysOf(const KinematicTree& tree) const {

@@ -36,14 +36,20 @@ class NamedTolerances {
   const PoseTolerance& base() const { return of_base_; }
   /// @throws std::invalid_argument: a number negative or not finite.
   void setObject(const std::string& name, const PoseTolerance& tolerance);
+  /// @throws std::invalid_argument: a number that is not finite, a negative speed.
+  void setSpeed(const std::string& name, const ObjectSpeed& speed);
   const JointTolerance& ofAllJoints() const { return of_all_joints_; }
   const std::map<std::string, JointTolerance>& ofJoints() const { return of_joint_; }
   const std::map<std::string, PoseTolerance>& ofObjects() const { return of_object_; }
+  const std::map<std::string, ObjectSpeed>& speeds() const { return speed_of_; }
+  /// That of an object; not moving if nobody has set one.
+  ObjectSpeed speedOf(const std::string& object) const;
+  bool anySpeed() const;
   void clear();
   /// Forgets those of objects of other names than these.
   void keep(const std::function<bool(const std::string& name)>& isKept);
 
-  /// Some joint or object strays.
+  /// Some joint or object strays, or an object moves by itself.
   bool any() const;
   /// @throws std::invalid_argument: a joint with a tolerance is in the tree no more, or is another one by now.
   TreeStrays straysOf(const KinematicTree& tree) const;
@@ -56,6 +62,7 @@ class NamedTolerances {
   PoseTolerance of_base_;
   std::map<std::string, JointTolerance> of_joint_;
   std::map<std::string, PoseTolerance> of_object_;
+  std::map<std::string, ObjectSpeed> speed_of_;
 };
 
 }  // namespace fcl_artic

@@ -10,7 +10,9 @@
 #include <fcl/geometry/geometric_shape_to_BVH_model.h>
 #include <gtest/gtest.h>
 
+#include "fcl_artic/guard.h"
 #include "fcl_artic/manager.h"
+#include "fcl_artic/point_cloud.h"
 
 namespace allocation_test {
 
@@ -146,6 +148,55 @@ TEST(Allocation, PreparedTreesAreNotMadeByTheFirstQuery) {
   EXPECT_GT(late, warm) << "nothing is made: this says nothing";
   const auto [prepared, after] = firstAndSecond(true);
   EXPECT_EQ(prepared, after);
+}
+
+/// As many answers as FCL_ARTIC_GUARD_ANSWERS says.
+long answersWanted() {
+  const char* text = std::getenv("FCL_ARTIC_GUARD_ANSWERS");
+  return text ? std::atol(text) : 20000;
+}
+
+TEST(Allocation, AGuardsAnswersHaveTheirMemory) {
+  Arm arm;
+  std::vector<Vector3d> points;
+  for (int i = 0; i < 2000; ++i) points.emplace_back(0.2 + 0.001 * (i % 100), -0.8, 0.01 * (i / 100));
+  arm.manager->registerObject(object(std::make_shared<PointCloud>(points, 0.01), Vector3d::Zero()), "cloud");
+  const std::string person = "a person whose name is longer than a short string";
+  arm.manager->registerObject(object(std::make_shared<fcl::Sphered>(0.2), {1.6, 1.2, 0}), person);
+  arm.manager->setObjectSpeed(person, {0.6, 0});
+  arm.manager->setJointTolerances({0.005, 0});
+  arm.manager->setup();
+  const std::vector<double> times{0, 1, 1.5, 3, 4};
+  const std::vector<VectorXd> waypoints{Vector3d(0.6, 0.2, 0), Vector3d(0.7, 0.5, 1), Vector3d(1.2, 0.1, 0),
+                                        Vector3d(-0.8, 0.3, 1), Vector3d(0.4, 0.2, 0)};
+  const std::vector<VectorXd> still(5, Vector3d::Zero());
+  GuardOptions options;
+  options.deceleration = Vector3d(10, 10, 10);
+  options.most_age = 1e9;
+  for (const bool smooth : {false, true}) {
+    Guard guard(arm.tree, options);
+    guard.follow(smooth ? JointTrajectory::quintic(*arm.tree, times, waypoints, still, still)
+                        : JointTrajectory::linear(*arm.tree, times, waypoints));
+    const LiveScene live(arm.manager->copy());
+    GuardAnswer answer;
+    AheadAnswer ahead;
+    long before = 0, full = 0, slow = 0, stop = 0;
+    const long wanted = answersWanted();
+    for (long n = -1000; n < wanted; ++n) {
+      if (n == 0) before = allocations;
+      const double at = 4 * static_cast<double>((n + 1000) * 7919 % 1000) / 1000;
+      const double speed = static_cast<double>(n & 3) / 3;
+      guard.ask(*live.latest(), 1e-4 * static_cast<double>(n & 63), at, speed, answer);
+      if (n % 16 == 0) guard.lookAhead(*live.latest(), 0, at, ahead);
+      full += answer.speed == 1;
+      slow += answer.speed > 0 && answer.speed < 1;
+      stop += answer.speed == 0;
+    }
+    EXPECT_EQ(allocations - before, 0);
+    EXPECT_GT(full, wanted / 100);
+    EXPECT_GT(slow, wanted / 100);
+    EXPECT_GT(stop, wanted / 100);
+  }
 }
 
 }  // namespace

@@ -282,6 +282,84 @@ TEST(Tube, BadTolerancesChangeNothing) {
   EXPECT_FALSE(arm.turn(0, 0).isFree()) << "the joint's 0.01 still counts";
 }
 
+/// A cart along x beside a ball that moves by itself.
+struct CartAndPerson {
+  Cart cart;
+  std::shared_ptr<fcl::CollisionObjectd> person;
+  explicit CartAndPerson(const Vector3d& at, const ObjectSpeed& speed) : person(ball(0.1, at)) {
+    cart.manager->registerObject(person, "person");
+    cart.manager->setObjectSpeed("person", speed);
+    cart.manager->setup();
+  }
+};
+
+TEST(Speed, ABallComesTowardsASlide) {
+  // The cart's middle is at (t, 0). They may meet where its distance from (0, y) is 0.2 + v max(0, t - s).
+  for (const double since : {0.0, 0.25, -0.25, 2.0}) {
+    const double v = 0.8, y = 0.9;
+    CartAndPerson scene(Vector3d(0, y, 0), {v, since});
+    const CertifiedResult result = scene.cart.run(0, 1);
+    double touch = 2;
+    for (int k = 0; k <= 1000000 && touch > 1; ++k) {
+      const double t = 1e-6 * k;
+      if (std::hypot(t, y) <= 0.2 + v * std::max(0.0, t - since)) touch = t;
+    }
+    if (touch > 1) {
+      EXPECT_TRUE(result.isFree()) << since;
+      continue;
+    }
+    EXPECT_EQ(result.status, Status::contact);
+    EXPECT_FALSE(result.certain) << "nobody knows where it goes";
+    EXPECT_LE(result.t_lower, touch);
+    EXPECT_GE(result.t_lower, touch - 1e-5);
+  }
+}
+
+TEST(Speed, ATrajectoryHasItsOwnTime) {
+  // A cart that waits for 3 s, from 100 s on: the ball needs (1 - 0.2) / 0.5 = 1.6 s.
+  CartAndPerson scene(Vector3d(0, 1, 0), {0.5, 0});
+  const VectorXd here = VectorXd::Zero(1), there = VectorXd::Constant(1, 1e-3);
+  const JointTrajectory slow = JointTrajectory::linear(*scene.cart.tree, {100, 101, 103}, {here, there, here});
+  CertifiedRequest request;
+  request.tolerance_time = 1e-4;
+  const CertifiedResult result = scene.cart.manager->continuousCollide(slow, request);
+  ASSERT_EQ(result.status, Status::contact);
+  EXPECT_NEAR(result.t_lower, 101.6, 1e-3);
+  scene.cart.manager->setObjectSpeed("person", {0.5, 1.5});
+  scene.cart.manager->setup();
+  EXPECT_TRUE(scene.cart.manager->continuousCollide(slow, request).isFree());
+  const JointTrajectory quick = JointTrajectory::linear(*scene.cart.tree, {100, 100.1, 101.5}, {here, there, here});
+  scene.cart.manager->setObjectSpeed("person", {0.5, 0});
+  scene.cart.manager->setup();
+  EXPECT_TRUE(scene.cart.manager->continuousCollide(quick, request).isFree());
+}
+
+TEST(Speed, WhatIsRefused) {
+  CartAndPerson scene(Vector3d(0, 1, 0), {1.5, 0});
+  ArticulatedCollisionManager& manager = *scene.cart.manager;
+  EXPECT_THROW(manager.setObjectSpeed("cart", {1, 0}), std::invalid_argument);
+  EXPECT_THROW(manager.setObjectSpeed("persona", {1, 0}), std::invalid_argument);
+  EXPECT_THROW(manager.setObjectSpeed("person", {-1, 0}), std::invalid_argument);
+  EXPECT_THROW(manager.setObjectSpeed("person", {1, std::nan("")}), std::invalid_argument);
+  EXPECT_NE(manager.describeTolerances().find("person"), std::string::npos);
+  CertifiedRequest request;
+  request.certificate = true;
+  EXPECT_THROW(scene.cart.run(0, 1, request), std::invalid_argument);
+  request = {};
+  request.method = Method::redon2004;
+  EXPECT_THROW(scene.cart.run(0, 1, request), std::invalid_argument);
+  // Speeds go with their object, and stay with its name where it is replaced.
+  const auto other = ball(0.1, Vector3d(0, 0.9, 0));
+  manager.replaceObject("person", other);
+  manager.setup();
+  EXPECT_FALSE(scene.cart.run(0, 1).isFree());
+  EXPECT_THROW(manager.replaceObject("nobody", ball(1)), std::invalid_argument);
+  manager.unregisterObject(other);
+  manager.registerObject(ball(0.1, Vector3d(0, 0.9, 0)), "person");
+  manager.setup();
+  EXPECT_TRUE(scene.cart.run(0, 0.5).isFree());
+}
+
 }  // namespace
 }  // namespace tube_test
 }  // namespace fcl_artic

@@ -22,11 +22,10 @@ CertifiedResult& scratch() {
 const ArticulatedCollisionManager& requireStill(const ArticulatedCollisionManager& manager) {
   thread_local std::vector<const fcl::ContinuousCollisionObjectd*> moving;
   manager.getObjects(moving);
-  if (moving.empty()) return manager;
+  if (moving.empty() && !manager.hasSpeeds()) return manager;
   throw std::invalid_argument(
       "planning: an obstacle moves, and each edge of a plan would begin where the obstacle does: plan without it, and "
-      "ask "
-      "the manager about the whole trajectory with its times");
+      "ask the manager about the whole trajectory with its times");
 }
 
 /// Checks the constructors' arguments before any of them is used.

@@ -29,10 +29,13 @@ class Strays : PartOfSolver {
     if (!any()) return 0;
     return min(problem().link_pairs[link_pair].stray, in_world);
   }
-  /// How far an obstacle's own pose strays.
-  double ofObstacle(int body_number) const { return any() ? body(body_number).stray : 0; }
+  /// How far an obstacle strays by itself, over [0, 1].
+  double ofObstacle(int body_number) const { return any() ? ofBody(body(body_number), 1) : 0; }
   /// No obstacle's is larger.
-  double largest() const { return any() ? problem().largest_stray : 0; }
+  double largest() const {
+    if (!any()) return 0;
+    return problem().largest_stray + wayOf(problem().largest_speed, problem().earliest_since, 1);
+  }
 
  private:
   /// A segment grown by a ball: it holds a body.
@@ -71,6 +74,10 @@ class Strays : PartOfSolver {
   };
   void direct(const Chain& chain, const Placement& inverse_a, const Undirected& others, Tube& tube);
   double ofBase(const Body& link);
+  /// How far something comes by itself until t.
+  double wayOf(double speed, double since, double t) const;
+  /// How far a body strays by itself until t: its pose's tolerance and its own way.
+  double ofBody(const Body& body, double t) const { return body.stray + wayOf(body.speed, body.since, t); }
   /// Sums over the steps up to one, of the world's sweep.
   struct Form {
     bool made = false;
@@ -93,6 +100,15 @@ class Strays : PartOfSolver {
 inline double Strays::strayOf(const engine::SweepStep& step) const {
   // The chord of an angle is no longer than the angle, and no longer than 2.
   return turns(step.kind) ? min(step.stray, 2.0) : step.stray;
+}
+
+/// Rounding of the clock and of a product (NUMERICS, "Tubes").
+inline double Strays::wayOf(double speed, double since, double t) const {
+  if (!(speed > 0)) return 0;
+  const engine::Clock& clock = query().clock;
+  const double sizes = (clock.begin < 0 ? -clock.begin : clock.begin) + (clock.end < 0 ? -clock.end : clock.end);
+  const double now = t >= 1 ? clock.end : clock.begin + t * (clock.end - clock.begin);
+  return speed * max(0.0, now - since + 4 * kUlp * (sizes + (since < 0 ? -since : since))) * (1 + 2 * kUlp);
 }
 
 /// @param R, t  of the body's tree in the frame that the outline is wanted in.
@@ -288,7 +304,8 @@ inline void Strays::between(PairId pair, double pose_error, Tube& tube) {
   const bool both = !base && (!problem().isScenePair(pair) || a.radius < b.radius);
   const Chain chain = {parts.sweep, parts.step_b, both ? &a : nullptr, b, pose_error};
   const Sums least = ofSteps(chain);
-  const double poses = (A.stray + B.stray + (base ? ofBase(B) : 0)) * (1 + 8 * kUlp);
+  const double until = frames_.batch().finish();
+  const double poses = (ofBody(A, until) + ofBody(B, until) + (base ? ofBase(B) : 0)) * (1 + 8 * kUlp);
   tube.middle = least.middle + Lanes(poses);
   tube.over = (maxLane(least.over) + poses) * (1 + 2 * kUlp);
   direct(chain, *parts.inverse_a, {poses, base ? problem().base.angle : 0}, tube);
@@ -369,7 +386,7 @@ inline double Strays::inWorld(const Body& link) {
     const double rounding = 64 * form.count * kUlp * form.strays * (last.rates.a * lever + last.slide_rate);
     of_steps = root + form.strays * outline.radius + form.slides + frames_.batch().d * (speeds + rounding);
   }
-  return (of_steps + link.stray + ofBase(link)) * (1 + 32 * kUlp);
+  return (of_steps + ofBody(link, frames_.batch().finish()) + ofBase(link)) * (1 + 32 * kUlp);
 }
 
 }  // namespace FCL_ARTIC_ISA
