@@ -165,6 +165,10 @@ void Guard::Impl::begin(const LiveScene::Snapshot& scene, double now, double at)
   manager = &scene.manager;
   const Registry& registry = manager->impl_->registry;
   manager->impl_->requireReady();
+  if (!manager->impl_->setup.isOf(*tree)) {  // levers go by the tree's links and joints
+    throw std::invalid_argument("Guard: the scene is of robot '" + registry.tree()->name() +
+                                "', and the guard was made for robot '" + tree->name() + "', another tree");
+  }
   path->trajectory().requireOf(*registry.tree());
   if (!registry.moving().empty()) {
     throw std::invalid_argument("Guard: obstacle '" + registry.moving().front().name +
