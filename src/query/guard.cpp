@@ -150,7 +150,7 @@ void Guard::Impl::measureRobot() {
 /// brings two bodies nearer by no more than the lever times the angle. Tables and proofs of ranges are asked about all
 /// values between.
 double Guard::Impl::payForParts() {
-  const VariableStrays of_robot = manager->impl_->setup.variableStrays();
+  const VariableStrays of_robot = manager->impl_->setup.variableStrays(1);
   const Eigen::VectorXd& error = path->partError();
   for (Eigen::Index v = 0; v < error.size(); ++v) {
     strays[static_cast<std::size_t>(v)] = kUp * (of_robot.of(static_cast<int>(v)) + error[v]);
