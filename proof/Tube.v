@@ -418,10 +418,18 @@ Definition at_rest : pose :=
 Definition spot (T : pose) (x : tvec) : tvec :=
   tadd (tadd (tscale (tx x) (wx T)) (tscale (ty x) (wy T))) (tadd (tscale (tz x) (wz T)) (wo T)).
 
+(** Above the length of a vector of models: with its Bernstein coefficients b_i, |sum B_i b_i| <= sum B_i |b_i|. *)
+Definition integer_norm (x y z : Z) : Z := Z.sqrt_up (x * x + y * y + z * z).
+Definition lengths (v : tvec) : upper :=
+  let at_ pick := integer_norm (pick (tx v)) (pick (ty v)) (pick (tz v)) in
+  let rest := (rem (tx v) + rem (ty v) + rem (tz v))%Z in
+  Upper (at_ (fun m => c0 m - c1 m + c2 m)%Z + rest) (at_ (fun m => c0 m - c2 m)%Z + rest)
+    (at_ (fun m => c0 m + c1 m + c2 m)%Z + rest).
+
 (** How far the pieces are from the origin. *)
 Definition longest (c : round) : Z :=
   match semiaxes c with Some a => Z.max (bound (tx a)) (Z.max (bound (ty a)) (bound (tz a))) | None => 0%Z end.
-Definition corner_far (T : pose) (c : round) : upper := upper_add (chord (spot T (centre c))) (upper_const (longest c)).
+Definition corner_far (T : pose) (c : round) : upper := upper_add (lengths (spot T (centre c))) (upper_const (longest c)).
 Fixpoint corners_far (T : pose) (cs : list round) : option upper :=
   match cs with
   | [] => None
@@ -443,7 +451,7 @@ Definition box_radius (b : bounds) : Z :=
   let half lo hi := (let m := (lo + hi) / 2 in Z.max (hi - m) (m - lo))%Z in
   let x := half (x0 b) (x1 b) in let y := half (y0 b) (y1 b) in let z := half (z0 b) (z1 b) in
   Z.sqrt_up (x * x + y * y + z * z).
-Definition box_far (T : pose) (b : bounds) : upper := upper_add (chord (spot T (tbox_middle b))) (upper_const (box_radius b)).
+Definition box_far (T : pose) (b : bounds) : upper := upper_add (lengths (spot T (tbox_middle b))) (upper_const (box_radius b)).
 
 (** The greater of [best] and how far the pieces are. Groups that are not beyond it are passed over; of a box that is small
     all of it is taken. *)
@@ -557,6 +565,45 @@ Proof.
   repeat apply holdsv_add; try (apply holdsv_scale; assumption); assumption.
 Qed.
 
+Lemma lengths_ok m v : holdsv m s v -> below (lengths m) s (norm v).
+Proof.
+  intros (Hx & Hy & Hz). destruct (weights s Hs) as (W0 & W1 & W2).
+  set (b pick := Vec (V (pick (tx m))) (V (pick (ty m))) (V (pick (tz m)))).
+  set (p0 := fun m => (c0 m - c1 m + c2 m)%Z). set (p1 := fun m => (c0 m - c2 m)%Z). set (p2 := fun m => (c0 m + c1 m + c2 m)%Z).
+  set (B0 := (1 - s) * (1 - s) / 4) in *. set (B1 := (1 - s) * (1 + s) / 2) in *. set (B2 := (1 + s) * (1 + s) / 4) in *.
+  set (mean := add (add (scale B0 (b p0)) (scale B1 (b p1))) (scale B2 (b p2))).
+  assert (SP : forall k u, 0 <= k -> norm (scale k u) = k * norm u).
+  { intros k u Hk. unfold norm. replace (dot (scale k u) (scale k u)) with (k * k * dot u u) by (coords; ring).
+    rewrite sqrt_mult_alt by (apply Rmult_le_pos; exact Hk). rewrite sqrt_square by exact Hk. reflexivity. }
+  assert (NM : norm mean <= B0 * norm (b p0) + B1 * norm (b p1) + B2 * norm (b p2)).
+  { rewrite <- !SP by assumption. unfold mean. eapply Rle_trans; [apply triangle|]. apply Rplus_le_compat_r, triangle. }
+  assert (PM : forall a, V (p0 a) * B0 + V (p1 a) * B1 + V (p2 a) * B2 = poly a s).
+  { intros a. unfold p0, p1, p2, poly, B0, B1, B2. rewrite !V_add, !V_sub. field. }
+  set (rest := (rem (tx m) + rem (ty m) + rem (tz m))%Z).
+  assert (R : norm (sub v mean) <= V rest).
+  { eapply Rle_trans; [apply norm_sum|]. unfold rest. rewrite !V_add. unfold holds in Hx, Hy, Hz.
+    rewrite <- PM in Hx, Hy, Hz. unfold mean, b, sub, add, scale; cbn [vx vy vz].
+    repeat apply Rplus_le_compat;
+      match goal with |- Rabs ?u <= _ => match goal with H : Rabs ?k <= V (rem _) |- _ => replace u with k by ring; exact H end end. }
+  assert (N : norm v <= norm mean + norm (sub v mean)).
+  { eapply Rle_trans; [|apply triangle]. apply Req_le. f_equal. destruct v as [p q r]. generalize mean. intros [p' q' r']. coords.
+    f_equal; ring. }
+  pose proof (integer_length (p0 (tx m)) (p0 (ty m)) (p0 (tz m))) as L0.
+  pose proof (integer_length (p1 (tx m)) (p1 (ty m)) (p1 (tz m))) as L1.
+  pose proof (integer_length (p2 (tx m)) (p2 (ty m)) (p2 (tz m))) as L2.
+  change (norm (b p0) <= V (integer_norm (c0 (tx m) - c1 (tx m) + c2 (tx m)) (c0 (ty m) - c1 (ty m) + c2 (ty m))
+    (c0 (tz m) - c1 (tz m) + c2 (tz m)))) in L0.
+  change (norm (b p1) <= V (integer_norm (c0 (tx m) - c2 (tx m)) (c0 (ty m) - c2 (ty m)) (c0 (tz m) - c2 (tz m)))) in L1.
+  change (norm (b p2) <= V (integer_norm (c0 (tx m) + c1 (tx m) + c2 (tx m)) (c0 (ty m) + c1 (ty m) + c2 (ty m))
+    (c0 (tz m) + c1 (tz m) + c2 (tz m)))) in L2.
+  unfold below, lengths; cbn [u0 u1 u2]. fold rest. rewrite !(V_add _ rest). fold B0 B1 B2.
+  apply (Rmult_le_compat_r B0) in L0; [|exact W0]. apply (Rmult_le_compat_r B1) in L1; [|exact W1].
+  apply (Rmult_le_compat_r B2) in L2; [|exact W2].
+  assert (ONE : B0 + B1 + B2 = 1) by (unfold B0, B1, B2; field).
+  replace (V rest) with (V rest * (B0 + B1 + B2)) in R by (rewrite ONE; ring).
+  rewrite !Rmult_plus_distr_r. lra.
+Qed.
+
 Definition short (E : vec -> vec) : Prop := forall x y, norm (sub (E x) (E y)) <= norm (sub x y).
 
 Lemma arm_short axis c F : (axis = true -> dot c c = 1) -> isometry F -> short (fun x => arm axis c (F x)).
@@ -587,7 +634,7 @@ Lemma corners_far_ok T E cs c p a : holds_pose s T E -> In c cs -> holds_round c
   below_opt (corners_far T cs) s (norm (E p) + V (longest c)).
 Proof.
   intros HT I [Hp _]. assert (K : below (corner_far T c) s (norm (E p) + V (longest c))).
-  { apply below_add; [apply chord_ok; [exact Hs | apply spot_ok; assumption] | apply below_const; lra]. }
+  { apply below_add; [apply lengths_ok, spot_ok; assumption | apply below_const; lra]. }
   induction cs as [|c' cs IH]; [destruct I|]. cbn [corners_far]. destruct cs as [|c'' cs].
   - destruct I as [->|[]]. exact K.
   - destruct I as [->|I]; [apply below_join_l; [exact Hs | exact K] | apply below_join_r; [exact Hs | apply IH; exact I]].
@@ -651,7 +698,7 @@ Proof.
   - replace (E x) with (add (E (box_middle b)) (sub (E x) (E (box_middle b)))).
     + eapply Rle_trans; [apply triangle|]. pose proof (SH x (box_middle b)). pose proof (box_radius_ok b x B). lra.
     + generalize (E x) (E (box_middle b)). intros [] []. coords. f_equal; ring.
-  - apply below_add; [|apply below_const; lra]. apply chord_ok; [exact Hs|]. apply spot_ok; [exact HT|].
+  - apply below_add; [|apply below_const; lra]. apply lengths_ok, spot_ok; [exact HT|].
     repeat split; apply holds_exact.
 Qed.
 
