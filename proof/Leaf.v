@@ -52,30 +52,49 @@ Definition own_reach (sd : side) (f : func) (l : Z) (os : forest) : option upper
 Definition partners_reach (sd : side) (f : func) (l : Z) (os : forest) : option upper :=
   match sd with PartnersWall => Some (upper_const 0) | _ => reach f l os end.
 
-(** How far the pieces of a body stray, seen from its frame and from all above it. *)
-Definition strays_up (fs : tree) (pl : plays) (A : sbody) (os : forest) : list (nat * option upper) :=
+(** The pieces of a body, seen from its frame and from all above it. *)
+Definition views_up (fs : tree) (pl : plays) (A : sbody) (os : forest) : list view :=
   if negb (p_any pl) && is_none (sb_give A) then still_in (length fs) fs (sb_frame A)
-  else
-    moves (length fs) fs (p_gives pl) os (sb_frame A) (rise (sb_place A) at_rest) (move os (sb_give A) at_rest).
+  else moves (length fs) fs (p_gives pl) os (View (sb_frame A) (rise (sb_place A) at_rest) (move os (sb_give A) at_rest)).
 
-(** How far both stray, seen from the first frame that both stand in. *)
-Fixpoint stray_of (c : nat) (l : list (nat * option upper)) : option (option upper) :=
-  match l with [] => None | (k, u) :: rest => if Nat.eqb k c then Some u else stray_of c rest end.
-Fixpoint together (frames : nat) (a b : list (nat * option upper)) : option upper :=
+Fixpoint view_at (i : nat) (l : list view) : option view :=
+  match l with [] => None | v :: rest => if Nat.eqb (v_frame v) i then Some v else view_at i rest end.
+(** From the first frame that both stand in. *)
+Fixpoint common (a b : list view) : option (view * view) :=
   match a with
   | [] => None
-  | (c, u) :: rest =>
-      match stray_of c b with
-      | Some w => if Nat.leb c frames then upper_plus u w else None
-      | None => together frames rest b
-      end
+  | v :: rest => match view_at (v_frame v) b with Some u => Some (v, u) | None => common rest b end
+  end.
+(** The frames from i, without it, down to the first of the list. *)
+Fixpoint way_down (i : nat) (l : list view) (known : list nat) : list nat :=
+  match l with
+  | [] => known
+  | v :: rest => if Nat.eqb (v_frame v) i then known else way_down i rest (v_frame v :: known)
+  end.
+
+(** [gap]: above -gap along a direction that is no longer than l. It remains if both stray as they do seen from one frame. *)
+Definition remains (fs : tree) (l : Z) (gap : upper) (v u : view) : bool :=
+  Nat.eqb (v_frame v) (v_frame u) && Nat.leb (v_frame v) (length fs) &&
+  match upper_plus (v_stray v) (v_stray u) with Some k => negative (upper_add gap (upper_scale l k)) | None => false end.
+
+(** Seen from the frame that both stand in, or else from one between the two: distances are the same from everywhere. *)
+Definition remains_somewhere (fs : tree) (pl : plays) (l : Z) (gap : upper) (os os' : forest) (a b : list view) : bool :=
+  match common a b with
+  | None => false
+  | Some (v, u) =>
+      remains fs l gap v u ||
+      p_any pl &&
+      (existsb (fun v' => match view_at (v_frame v') b with Some u' => remains fs l gap v' u' | None => false end)
+         (descend fs (p_gives pl) os v (way_down (v_frame v) b [])) ||
+       existsb (fun u' => match view_at (v_frame u') a with Some v' => remains fs l gap v' u' | None => false end)
+         (descend fs (p_gives pl) os' u (way_down (v_frame u) a [])))
   end.
 
 (** (A value of a coinductive type is lazy in OCaml.) *)
-CoInductive later := Later (strays : list (nat * option upper)).
+CoInductive later := Later (views : list view).
 
-Definition shown (fs : tree) (pl : plays) (known : list (nat * func)) (sd : side) (l : Z) (ua : option upper) (sa : later)
-    (p : partner) : bool :=
+Definition shown (fs : tree) (pl : plays) (known : list (nat * func)) (sd : side) (l : Z) (ua : option upper) (os : forest)
+    (views : later) (p : partner) : bool :=
   match at_frame (length fs) fs known (sb_frame (p_body p)) with
   | None => false
   | Some f =>
@@ -83,12 +102,8 @@ Definition shown (fs : tree) (pl : plays) (known : list (nat * func)) (sd : side
       | Some u, Some w =>
           let gap := upper_add (upper_add u w) (upper_const (mulup (Z.max 0 (p_margin p)) l)) in
           negative gap &&
-          match sa with
-          | Later a =>
-              match together (length fs) a (strays_up fs pl (p_body p) (p_pieces p)) with
-              | Some k => negative (upper_add gap (upper_scale l k))
-              | None => false
-              end
+          match views with
+          | Later a => remains_somewhere fs pl l gap os (p_pieces p) a (views_up fs pl (p_body p) (p_pieces p))
           end
       | _, _ => false
       end
@@ -137,8 +152,8 @@ Definition not_shown (fs : tree) (pl : plays) (A : sbody) (os : forest) (n : lin
   | Some f =>
       let l := length_up (fv (l_func n)) in
       let ua := own_reach (l_side n) (down (sb_place A) f) l os in
-      let sa := Later (strays_up fs pl A os) in
-      filter (fun p => negb (shown fs pl known (l_side n) l ua sa p)) ps
+      let views := Later (views_up fs pl A os) in
+      filter (fun p => negb (shown fs pl known (l_side n) l ua os views p)) ps
   end.
 
 (** Over [a, b], of which [ts] are the poses. Time is halved for those that are left, [fuel] times. *)
@@ -258,46 +273,79 @@ Qed.
 Lemma tree_length a b : length (tree_at sfs q a b) = length (frames w).
 Proof. unfold tree_at, tree_of, sfs. rewrite !map_length. reflexivity. Qed.
 
-Lemma stray_of_in c l v : stray_of c l = Some v -> In (c, v) l.
+Lemma view_at_in i l v : view_at i l = Some v -> In v l.
 Proof.
-  induction l as [|[k u] rest IH]; cbn [stray_of In]; [discriminate|].
-  destruct (Nat.eqb_spec k c) as [->|_]; [intros [= ->]; auto | auto].
+  induction l as [|u rest IH]; cbn [view_at In]; [discriminate|].
+  destruct (Nat.eqb (v_frame u) i); [intros [= ->]; auto | auto].
+Qed.
+Lemma common_in a b v u : common a b = Some (v, u) -> In v a /\ In u b.
+Proof.
+  induction a as [|x rest IH]; cbn [common In]; [discriminate|].
+  destruct (view_at (v_frame x) b) eqn:E; [intros [= <- <-]; split; [auto | exact (view_at_in _ _ _ E)]|].
+  intros H. destruct (IH H). auto.
 Qed.
 
-Lemma strays_up_ok s a b t P P' A os F F' x o c u : Rabs s <= 1 -> holds (time_tm a b) s t ->
-  frames_at w (at_time pc t) P P' -> stands s A F F' -> has os o -> covers s o x ->
-  In (c, u) (strays_up (tree_at sfs q a b) (plays_of w q) A os) -> seen_from s P P' c u (sb_frame A) (F x) (F' x).
+Section Views.
+Variables (s t : R) (a b : Z) (P P' : nat -> vec -> vec).
+Hypothesis Hs : Rabs s <= 1.
+Hypothesis Hts : holds (time_tm a b) s t.
+Hypothesis HP : frames_at w (at_time pc t) P P'.
+Let fs := tree_at sfs q a b.
+Let pl := plays_of w q.
+
+Lemma views_up_ok A os F F' x o : stands s A F F' -> has os o -> covers s o x ->
+  forall v, In v (views_up fs pl A os) ->
+  let X := P (sb_frame A) (F x) in let X' := P' (sb_frame A) (F' x) in
+  seen_from s P P' (v_frame v) (v_stray v) X X' /\ (p_any pl = true -> seen s P P' v x X X').
 Proof.
-  intros Hs Hts HP [HF HM] I C. unfold strays_up.
-  destruct (negb (p_any (plays_of w q)) && is_none (sb_give A)) eqn:K.
+  intros [HF HM] I C v. unfold views_up.
+  destruct (negb (p_any pl) && is_none (sb_give A)) eqn:K; cbv zeta.
   - apply andb_true_iff in K. destruct K as [K1 K2]. apply negb_true_iff in K1.
-    destruct (sb_give A); [discriminate|]. cbn [moves_by] in HM. rewrite HM.
-    apply (still_in_ok w pc s t (time_tm a b) Hs Hts P P' HP K1).
-  - apply (moves_ok s Hs (tree_at sfs q a b) (p_gives (plays_of w q)) P P') with (o := o) (F := F); try assumption.
+    destruct (sb_give A); [discriminate|]. cbn [moves_by] in HM. rewrite HM. intros J. split; [|congruence].
+    exact (still_in_ok w pc s t (time_tm a b) Hs Hts P P' HP K1 _ _ _ _ J).
+  - intros J. assert (S : seen s P P' v x (P (sb_frame A) (F x)) (P' (sb_frame A) (F' x))); [|split; [exact (seen_is_from _ _ _ _ _ _ _ S) | auto]].
+    revert J. apply (moves_ok s Hs fs (p_gives pl) P P') with (o := o); try assumption.
     + intros i k sts g. apply (frame_strays w pc s t (time_tm a b) Hs Hts P P' HP).
-    + exact (rise_ok s Hs _ _ _ _ HF (at_rest_ok s)).
-    + intros y z. apply (step_keeps s _ _ y z HF).
-    + apply (move_ok s Hs os (sb_give A) at_rest F F' (fun y => y) o x HM (at_rest_ok s)); [intros y z; reflexivity | exact I | exact C].
+    + exists F, (F' x). cbn [v_frame v_pose v_stray]. split; [exact (rise_ok s Hs _ _ _ _ HF (at_rest_ok s))|].
+      split; [intros y z; apply (step_keeps s _ _ y z HF)|]. split; [reflexivity|]. split; [reflexivity|].
+      apply (move_ok s Hs os (sb_give A) at_rest F F' (fun y => y) o x HM (at_rest_ok s)); [intros y z; reflexivity | exact I | exact C].
 Qed.
 
-Lemma together_ok s a b t P P' A os p F F' G G' x y o o' k : Rabs s <= 1 -> holds (time_tm a b) s t ->
-  frames_at w (at_time pc t) P P' -> stands s A F F' -> stands s (p_body p) G G' ->
-  has os o -> covers s o x -> has (p_pieces p) o' -> covers s o' y ->
-  together (length (tree_at sfs q a b)) (strays_up (tree_at sfs q a b) (plays_of w q) A os)
-    (strays_up (tree_at sfs q a b) (plays_of w q) (p_body p) (p_pieces p)) = Some k ->
-  exists r, 0 <= r /\ below k s r /\
-    norm (sub (P (sb_frame A) (F x)) (P (sb_frame (p_body p)) (G y))) - r <=
-    norm (sub (P' (sb_frame A) (F' x)) (P' (sb_frame (p_body p)) (G' y))).
+(** What remains of a gap g along a direction: more than r if both stray by r in all. *)
+Definition remaining (l : Z) (gap : upper) (X Y X' Y' : vec) : Prop :=
+  exists r k, 0 <= r /\ below k s r /\ negative (upper_add gap (upper_scale l k)) = true /\
+    norm (sub X Y) - r <= norm (sub X' Y').
+
+Lemma remains_ok l gap v u X Y X' Y' : remains fs l gap v u = true ->
+  seen_from s P P' (v_frame v) (v_stray v) X X' -> seen_from s P P' (v_frame u) (v_stray u) Y Y' -> remaining l gap X Y X' Y'.
 Proof.
-  intros Hs Hts HP HA HB Ix Cx Iy Cy.
-  pose proof (fun c u => strays_up_ok s a b t P P' A os F F' x o c u Hs Hts HP HA Ix Cx) as SA.
-  pose proof (fun c u => strays_up_ok s a b t P P' (p_body p) (p_pieces p) G G' y o' c u Hs Hts HP HB Iy Cy) as SB.
-  induction (strays_up _ _ A os) as [|[c u] rest IH]; cbn [together]; [discriminate|].
-  destruct (stray_of c _) as [v|] eqn:Sv; [|apply IH; intros c' u' J; apply SA; right; exact J].
-  destruct (Nat.leb_spec c (length (tree_at sfs q a b))) as [L|_]; [|discriminate]. rewrite tree_length in L. intros K.
-  destruct (seen_together w pc s t (time_tm a b) Hs Hts P P' HP (proj1 WF) c u v _ _ _ _ _ _ L (SA c u (or_introl eq_refl))
-    (SB c v (stray_of_in _ _ _ Sv))) as (r & R0 & B & N). rewrite K in B. exists r. auto.
+  unfold remains. rewrite !andb_true_iff, Nat.eqb_eq, Nat.leb_le. intros [[E L] K] HX HY. rewrite <- E in HY.
+  unfold fs in L. rewrite tree_length in L.
+  destruct (seen_together w pc s t (time_tm a b) Hs Hts P P' HP (proj1 WF) _ _ _ _ _ _ _ L HX HY) as (r & R0 & B & N).
+  destruct (upper_plus (v_stray v) (v_stray u)) as [k|]; [|discriminate]. exists r, k. auto.
 Qed.
+
+Lemma remains_somewhere_ok A os p F F' G G' x y o o' l gap : stands s A F F' -> stands s (p_body p) G G' ->
+  has os o -> covers s o x -> has (p_pieces p) o' -> covers s o' y ->
+  remains_somewhere fs pl l gap os (p_pieces p) (views_up fs pl A os) (views_up fs pl (p_body p) (p_pieces p)) = true ->
+  remaining l gap (P (sb_frame A) (F x)) (P (sb_frame (p_body p)) (G y)) (P' (sb_frame A) (F' x)) (P' (sb_frame (p_body p)) (G' y)).
+Proof.
+  intros HA HB Ix Cx Iy Cy. pose proof (views_up_ok A os F F' x o HA Ix Cx) as SA.
+  pose proof (views_up_ok (p_body p) (p_pieces p) G G' y o' HB Iy Cy) as SB. cbv zeta in SA, SB. unfold remains_somewhere.
+  destruct (common _ _) as [[v u]|] eqn:E; [|discriminate]. destruct (common_in _ _ _ _ E) as [Iv Iu].
+  assert (CH : forall i k sts g, nth_error fs i = Some (k, sts) -> nth_error (p_gives pl) i = Some g ->
+    exists M M', strays s sts g M M' /\ (forall z, P (S i) z = P k (M z)) /\ (forall z, P' (S i) z = P' k (M' z)))
+    by (intros i k sts g; apply (frame_strays w pc s t (time_tm a b) Hs Hts P P' HP)).
+  rewrite orb_true_iff, andb_true_iff, orb_true_iff, !existsb_exists. intros [K|[N [(v' & J & K)|(u' & J & K)]]].
+  - exact (remains_ok _ _ _ _ _ _ _ _ K (proj1 (SA v Iv)) (proj1 (SB u Iu))).
+  - destruct (view_at (v_frame v') _) as [u'|] eqn:V; [|discriminate].
+    eapply remains_ok; [exact K | | exact (proj1 (SB u' (view_at_in _ _ _ V)))]. apply seen_is_from with (x := x).
+    exact (descend_ok s Hs fs (p_gives pl) P P' CH os o x _ _ Ix Cx _ v (proj2 (SA v Iv) N) v' J).
+  - destruct (view_at (v_frame u') _) as [v'|] eqn:V; [|discriminate].
+    eapply remains_ok; [exact K | exact (proj1 (SA v' (view_at_in _ _ _ V))) |]. apply seen_is_from with (x := y).
+    exact (descend_ok s Hs fs (p_gives pl) P P' CH (p_pieces p) o' y _ _ Iy Cy _ u (proj2 (SB u Iu) N) u' J).
+Qed.
+End Views.
 
 Lemma not_shown_ok A os n ps a b t P P' p : (l_frame n <= length (frames w))%nat -> line_ok n A os p ->
   V a <= t <= V b -> frames_at w (at_time pc t) P P' -> In p ps ->
@@ -307,7 +355,7 @@ Proof.
   set (known := chain (length fs) fs (l_frame n) (l_func n)). set (l := length_up (fv (l_func n))).
   destruct (at_frame (length fs) fs known (sb_frame A)) as [f|] eqn:EA; [|left; exact Ip].
   set (ua := own_reach (l_side n) (down (sb_place A) f) l os).
-  destruct (shown fs (plays_of w q) known (l_side n) l ua (Later (strays_up fs (plays_of w q) A os)) p) eqn:ES.
+  destruct (shown fs (plays_of w q) known (l_side n) l ua os (Later (views_up fs (plays_of w q) A os)) p) eqn:ES.
   2:{ left. apply filter_In. split; [exact Ip|]. rewrite ES. reflexivity. }
   right. intros F F' G G' HFF HGG x y o o' Io Co Io' Co'.
   destruct (time_ok a b t Ht) as (s & Hs & Hts).
@@ -345,14 +393,13 @@ Proof.
       apply below_const. specialize (S o' y Io' Co'). rewrite V_0. unfold Y. rewrite <- Q, Xw. exact S. }
     destruct ua as [u|]; [|discriminate]. destruct ub as [u'|]; [|discriminate].
     cbn [below_opt] in Ra, Rb. apply andb_true_iff in ES. destruct ES as [_ ES].
-    destruct (together _ _ _) as [k|] eqn:ET; [|discriminate].
-    destruct (together_ok s a b t P P' A os p F F' G G' x y o o' k Hs Hts HP HFF HGG Io Co Io' Co' ET) as (r & R0 & Kr & NR).
-    fold X Y in NR.
+    destruct (remains_somewhere_ok s t a b P P' Hs Hts HP A os p F F' G G' x y o o' _ _ HFF HGG Io Co Io' Co' ES)
+      as (r & k & R0 & Kr & NEG0 & NR). fold X Y in NR. clear ES.
     set (mz := Z.max 0 (p_margin p)) in *. destruct (V_max 0 (p_margin p)) as [M0 M1]. fold mz in M0, M1. rewrite V_0 in M0.
     assert (M : V mz * norm wv <= V (mulup mz l)).
     { eapply Rle_trans; [|apply mulup_ge]. apply Rmult_le_compat_l; [exact M0 | apply LN; reflexivity]. }
     assert (L0 : 0 <= V l) by (eapply Rle_trans; [apply norm_nonneg | exact La]).
-    pose proof (below_negative _ s _ Hs ES (below_add _ _ s _ _ (below_add _ _ s _ _ (below_add _ _ s _ _ Ra Rb)
+    pose proof (below_negative _ s _ Hs NEG0 (below_add _ _ s _ _ (below_add _ _ s _ _ (below_add _ _ s _ _ Ra Rb)
       (below_const _ s _ M)) (below_scale s Hs l k r L0 Kr))) as NEG.
     assert (Mr : r * norm wv <= V l * r) by (rewrite Rmult_comm; apply Rmult_le_compat_r; [exact R0 | apply LN; reflexivity]).
     assert (D : (V mz + r) * norm wv < dot wv (sub X Y)).

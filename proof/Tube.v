@@ -109,6 +109,42 @@ Proof.
   apply Rmult_le_compat_l; [pose proof (Rabs_pos a); apply Rmin_glb; lra | apply cross_short; exact K].
 Qed.
 
+Lemma dot_determines a b : (forall u, dot u a = dot u b) -> a = b.
+Proof.
+  intros H. pose proof (H (Vec 1 0 0)) as X. pose proof (H (Vec 0 1 0)) as Y. pose proof (H (Vec 0 0 1)) as Z0.
+  destruct a as [a1 a2 a3], b as [b1 b2 b3]. unfold dot in *; cbn [vx vy vz] in *. f_equal; lra.
+Qed.
+
+Lemma step_onto s st E : holds_step s st E -> forall y, exists x, E x = y.
+Proof.
+  intros [km snm csm k sn cs F Hk Hsn Hcs K S HF | km wm k way F Hk Hw HF | um cm u c F Hu Hc K HF
+         | a b c pm m p F Ha Hb Hc Hp R HF] y.
+  - exists (turned k (- sn) cs y). rewrite HF. apply dot_determines. intros v.
+    rewrite dot_turned, turned_keeps_dot; [reflexivity | exact K | rewrite <- S; ring].
+  - exists (add y (scale (- way) k)). rewrite HF. destruct y as [y1 y2 y3]. unfold add, scale; cbn [vx vy vz]. f_equal; ring.
+  - exists (spun (scale (-1) u) c y). rewrite HF. apply dot_determines. intros v.
+    rewrite dot_spun, spun_keeps_dot; [reflexivity|]. rewrite <- K. unfold dot, scale; cbn [vx vy vz]. ring.
+  - exists (apply (transpose m) (sub y p)). rewrite HF.
+    replace (apply m (apply (transpose m) (sub y p))) with (sub y p).
+    + destruct y as [y1 y2 y3], p as [p1 p2 p3]. unfold sub, add, scale; cbn [vx vy vz]. f_equal; ring.
+    + apply dot_determines. intros v. rewrite dot_apply.
+      rewrite (rotation_keeps_dot (transpose m)) by (apply transpose_is_rotation; exact R). reflexivity.
+Qed.
+
+Definition onto (E : vec -> vec) : Prop := forall y, exists x, E x = y.
+
+Lemma turn_onto k a : dot k k = 1 -> onto (turn k a).
+Proof.
+  intros K y. exists (turned k (- sin a) (cos a) y). rewrite turn_is_turned. apply dot_determines. intros v.
+  pose proof (sin2_cos2 a) as S. unfold Rsqr in S. rewrite dot_turned, turned_keeps_dot; [reflexivity | exact K | rewrite <- S; ring].
+Qed.
+
+Lemma small_turn_onto most D : small_turn most D -> onto D.
+Proof. intros (k & a & K & _ & E) y. destruct (turn_onto k a K y) as [x <-]. exists x. apply E. Qed.
+
+Lemma shifted_onto a : onto (fun x => add x a).
+Proof. intros y. exists (sub y a). destruct y, a. coords. f_equal; ring. Qed.
+
 (** ** What tolerances give at a place
 
     There a point moves by [g_slide] at most, and [g_chord] times its distance from the axis [g_at] through the origin,
@@ -127,7 +163,7 @@ Definition moves_by (s : R) (g : option give) (E E' : vec -> vec) : Prop :=
 (** E takes x to where the motion has it, E' to where it may be. *)
 Inductive strays (s : R) : list step -> list (option give) -> (vec -> vec) -> (vec -> vec) -> Prop :=
   | strays_no gs E E' : (forall x, E x = x) -> (forall x, E' x = x) -> strays s [] gs E E'
-  | strays_first st sts g gs E E' M M' N N' : holds_step s st E -> isometry E' -> moves_by s g E E' ->
+  | strays_first st sts g gs E E' M M' N N' : holds_step s st E -> isometry E' -> onto E' -> moves_by s g E E' ->
       strays s sts gs M M' -> (forall x, N x = E (M x)) -> (forall x, N' x = E' (M' x)) ->
       strays s (st :: sts) (g :: gs) N N'.
 
@@ -244,6 +280,16 @@ Proof.
   - intros E x y. rewrite !E. reflexivity.
 Qed.
 
+Lemma pose_off_onto t G : pose_off t G -> onto G.
+Proof.
+  destruct t as [t|]; cbn [pose_off].
+  - intros (D & u & HD & _ & E) y. set (p := point (pivot t)) in *.
+    destruct (small_turn_onto _ _ HD (sub (sub y u) p)) as [z Z0]. exists (add z p). rewrite E.
+    replace (sub (add z p) p) with z by (destruct z, p; coords; f_equal; ring). rewrite Z0.
+    destruct y, u, p. coords. f_equal; ring.
+  - intros E y. exists y. apply E.
+Qed.
+
 Lemma pose_off_moves s t G O : isometry O -> pose_off t G -> moves_by s (pose_give t) O (fun x => O (G x)).
 Proof.
   intros HO. destruct t as [t|]; cbn [pose_off pose_give option_map moves_by g_axis g_at g_chord g_slide].
@@ -283,9 +329,9 @@ Qed.
 Lemma strays_same s sts gs M M' N N' : strays s sts gs M M' -> (forall x, N x = M x) -> (forall x, N' x = M' x) ->
   strays s sts gs N N'.
 Proof.
-  intros [gs' E E' HE HE' | st sts' g gs' E E' L L' K K' HS HI HG HL HK HK'] HN HN'.
+  intros [gs' E E' HE HE' | st sts' g gs' E E' L L' K K' HS HI HO HG HL HK HK'] HN HN'.
   - apply strays_no; intros; [rewrite HN | rewrite HN']; auto.
-  - eapply strays_first; [exact HS | exact HI | exact HG | exact HL | |]; intros; [rewrite HN | rewrite HN']; auto.
+  - eapply strays_first; [exact HS | exact HI | exact HO | exact HG | exact HL | |]; intros; [rewrite HN | rewrite HN']; auto.
 Qed.
 
 (** Steps that are not off. *)
@@ -295,7 +341,7 @@ Proof.
   intros H HM. induction H as [N HN | st l E L N HE HL IH HN]; cbn [app map].
   - eapply strays_same; [exact HM | intros; apply HN | intros; apply HN].
   - eapply strays_first with (E := E) (E' := E);
-      [exact HE | intros x y; apply (step_keeps s st E x y HE) | intros x; reflexivity | exact IH | |]; intros; apply HN.
+      [exact HE | intros x y; apply (step_keeps s st E x y HE) | exact (step_onto s st E HE) | intros x; reflexivity | exact IH | |]; intros; apply HN.
 Qed.
 
 Lemma element_strays s w q x e E E' sts gs M M' : Rabs s <= 1 -> holds_state x s q -> element_map w q e E E' -> strays s sts gs M M' ->
@@ -307,12 +353,13 @@ Proof.
   - assert (H : holds (tm_add (tm_mul (tm_number m) (nth v (x_amount x) tm_zero)) (tm_number c)) s (real m * amount q v + real c))
       by (apply holds_add; [apply holds_mul; [exact Hs | apply holds_number | apply Hq] | apply holds_number]).
     pose proof (sincos_holds s _ _ Hs H) as SC. destruct (sincos _) as [sn cs]. cbn [fst snd] in SC. destruct SC as [S C].
-    cbn [app]. eapply strays_first; [| | | exact HM | reflexivity | reflexivity].
+    cbn [app]. eapply strays_first; [| | | | exact HM | reflexivity | reflexivity].
     + apply holds_turned with (k := k) (sn := sin (real m * amount q v + real c)) (cs := cos (real m * amount q v + real c)); auto.
       * apply axis_ok. exact AM.
       * apply AM.
       * rewrite <- (sin2_cos2 (real m * amount q v + real c)). reflexivity.
     + apply turn_isometry. apply AM.
+    + apply turn_onto. apply AM.
     + replace (real m * (amount q v + e) + real c) with ((real m * amount q v + real c) + real m * e) by ring.
       destruct (listed (of_variables (off w)) v) as [d|] eqn:L; cbn [moves_by].
       * exists k. cbn [g_axis g_at g_chord g_slide arm]. split; [apply axis_ok; exact AM|]. split; [intros _; apply AM|].
@@ -326,9 +373,11 @@ Proof.
       by (apply holds_add; [apply holds_mul; [exact Hs | apply holds_number | apply Hq] | apply holds_number]).
     cbn [app].
     eapply strays_first with (E := fun y => add y (scale (real m * amount q v + real c) k))
-      (E' := fun y => add (add y (scale (real m * (amount q v + e) + real c) k)) u); [| | | exact HM | reflexivity | reflexivity].
+      (E' := fun y => add (add y (scale (real m * (amount q v + e) + real c) k)) u); [| | | | exact HM | reflexivity | reflexivity].
     + apply holds_slid with (k := k) (way := real m * amount q v + real c); auto. apply axis_ok. exact AM.
     + intros y z. f_equal. unfold sub, add, scale; cbn [vx vy vz]. f_equal; ring.
+    + intros y. destruct (shifted_onto u y) as [z <-].
+      destruct (shifted_onto (scale (real m * (amount q v + e) + real c) k) z) as [y0 <-]. exists y0. reflexivity.
     + assert (SUB : forall y, sub (add (add y (scale (real m * (amount q v + e) + real c) k)) u)
         (add y (scale (real m * amount q v + real c) k)) = add (scale (real m * e) k) u)
         by (intros y; unfold sub, add, scale; cbn [vx vy vz]; f_equal; ring).
@@ -367,8 +416,9 @@ Proof.
       - destruct y, z. unfold spun. coords. f_equal; ring. }
     cbn [app].
     eapply strays_first with (E := rotate W) (E' := fun y => D (rotate W y)) (M := fun y => S (M y)) (M' := fun y => S (M' y));
-      [exact HW | | | | reflexivity | reflexivity].
+      [exact HW | | | | | reflexivity | reflexivity].
     + intros y z. rewrite (small_turn_isometry _ _ HD). apply IW.
+    + intros y. destruct (small_turn_onto _ _ HD y) as [z <-]. destruct (step_onto _ _ _ HW z) as [y0 <-]. exists y0. reflexivity.
     + destruct (listed (of_rotations (off w)) v) as [d|] eqn:L; cbn [moves_by].
       * exists (Vec 0 0 0). cbn [g_axis g_at g_chord g_slide arm]. split; [apply origin_holds|]. split; [discriminate|].
         split; [apply chord_of_nonneg, listed_up_nonneg|]. intros y. rewrite V_0, Rplus_0_l.
@@ -406,6 +456,16 @@ Definition rise (st : step) (T : pose) : pose :=
   | Spun u c => each (tspun u c) (tspun u c) T
   | Placed a b c p =>
       let f v := Tvec (tdot a v) (tdot b v) (tdot c v) in each f (fun v => tadd (f v) p) T
+  end.
+
+(** Before the step: what it takes to T. *)
+Definition sink (st : step) (T : pose) : pose :=
+  match st with
+  | Turned k sn cs => let f := tturned k (tm_opp sn) cs in each f f T
+  | Slid k way => each (fun v => v) (fun v => tsub v (tscale way k)) T
+  | Spun u c => let f := tspun (topp u) c in each f f T
+  | Placed a b c p =>
+      let f v := tadd (tadd (tscale (tx v) a) (tscale (ty v) b)) (tscale (tz v) c) in each f (fun v => f (tsub v p)) T
   end.
 
 (** Less the point c; or the cross product with the axis c. *)
@@ -492,22 +552,47 @@ Fixpoint rise_all (os : forest) (sts : list step) (gs : list (option give)) (T :
   | _, _ => (T, Some (upper_const 0))
   end.
 
-(** In frame i, and in all above it. *)
-Fixpoint moves (fuel : nat) (fs : tree) (gs : list (list (option give))) (os : forest) (i : nat) (T : pose) (u : option upper) :
-    list (nat * option upper) :=
-  (i, u) ::
-  match fuel, i with
+(** The other way: from the parent's coordinates down, the first step first. *)
+Fixpoint fall_all (os : forest) (sts : list step) (gs : list (option give)) (T : pose) : pose * option upper :=
+  match sts, gs with
+  | st :: sts', g :: gs' =>
+      let T' := sink st T in
+      let (T'', u) := fall_all os sts' gs' T' in (T'', upper_plus (move os g T') u)
+  | _, _ => (T, Some (upper_const 0))
+  end.
+
+(** Where the pieces are in frame i and in all above it, and how far they stray, seen from there. *)
+Record view := View { v_frame : nat; v_pose : pose; v_stray : option upper }.
+Fixpoint moves (fuel : nat) (fs : tree) (gs : list (list (option give))) (os : forest) (v : view) : list view :=
+  v ::
+  match fuel, v_frame v with
   | S n, S j =>
       match nth_error fs j, nth_error gs j with
-      | Some (p, sts), Some g => let (T', w) := rise_all os sts g T in moves n fs gs os p T' (upper_plus u w)
+      | Some (p, sts), Some g =>
+          let (T, w) := rise_all os sts g (v_pose v) in moves n fs gs os (View p T (upper_plus (v_stray v) w))
       | _, _ => []
       end
   | _, _ => []
   end.
 
+(** Seen from the frames of a list, of which each stands in the one before. *)
+Fixpoint descend (fs : tree) (gs : list (list (option give))) (os : forest) (v : view) (l : list nat) : list view :=
+  match l with
+  | S j :: rest =>
+      match nth_error fs j, nth_error gs j with
+      | Some (p, sts), Some g =>
+          if Nat.eqb p (v_frame v) then
+            let (T, w) := fall_all os sts g (v_pose v) in
+            let v' := View (S j) T (upper_plus (v_stray v) w) in v' :: descend fs gs os v' rest
+          else []
+      | _, _ => []
+      end
+  | _ => []
+  end.
+
 (** The same where nothing strays. *)
-Fixpoint still_in (fuel : nat) (fs : tree) (i : nat) : list (nat * option upper) :=
-  (i, Some (upper_const 0)) ::
+Fixpoint still_in (fuel : nat) (fs : tree) (i : nat) : list view :=
+  View i at_rest (Some (upper_const 0)) ::
   match fuel, i with
   | S n, S j => match nth_error fs j with Some (p, _) => still_in n fs p | None => [] end
   | _, _ => []
@@ -537,6 +622,53 @@ Proof.
     repeat (split; [apply AP; assumption|]). split; [apply holdsv_add; [apply AP; exact HD | exact Hp]|].
     intros x. rewrite HE, X. destruct m as [[] [] []], a, b, c, d, p, x. unfold affine, apply; cbn [row1 row2 row3]. coords.
     f_equal; ring.
+Qed.
+
+(** The step's inverse, and its models. *)
+Lemma sink_ok st E T F : holds_step s st E -> holds_pose s T F ->
+  exists I, (forall x, E (I x) = x) /\ holds_pose s (sink st T) (fun x => I (F x)).
+Proof.
+  intros HE (a & b & c & d & HA & HB & HC & HD & X).
+  destruct HE as [km snm csm k sn cs E Hk Hsn Hcs K S HE | km wm k way E Hk Hw HE
+                 | um cm u cc E Hu Hc K HE | p1 p2 p3 pm m p E H1 H2 H3 Hp R HE]; cbn [sink].
+  - exists (turned k (- sn) cs). split.
+    { intros x. rewrite HE. apply dot_determines. intros v.
+      rewrite dot_turned, turned_keeps_dot; [reflexivity | exact K | rewrite <- S; ring]. }
+    exists (turned k (- sn) cs a), (turned k (- sn) cs b), (turned k (- sn) cs c), (turned k (- sn) cs d).
+    repeat (split; [apply holdsv_turned; try assumption; apply holds_opp; assumption|]). intros x. rewrite X.
+    destruct k, a, b, c, d, x. unfold affine. coords. f_equal; ring.
+  - exists (fun x => sub x (scale way k)). split.
+    { intros x. rewrite HE. destruct x, k. coords. f_equal; ring. }
+    exists a, b, c, (sub d (scale way k)).
+    repeat (split; [assumption|]). split.
+    + destruct HD as (D1 & D2 & D3), (holdsv_scale s Hs _ _ _ _ Hw Hk) as (K1 & K2 & K3).
+      repeat split; unfold sub, add; cbn [each wo tsub tx ty tz vx vy vz];
+        (eapply holds_eq; [|apply holds_sub; eassumption]); unfold scale; cbn [vx vy vz]; ring.
+    + intros x. rewrite X. unfold affine. coords. f_equal; ring.
+  - exists (spun (scale (-1) u) cc). split.
+    { intros x. rewrite HE. apply dot_determines. intros v. rewrite dot_spun, spun_keeps_dot; [reflexivity|].
+      rewrite <- K. unfold dot, scale; cbn [vx vy vz]. ring. }
+    exists (spun (scale (-1) u) cc a), (spun (scale (-1) u) cc b), (spun (scale (-1) u) cc c), (spun (scale (-1) u) cc d).
+    repeat (split; [apply holdsv_spun; try assumption; apply holdsv_opp; assumption|]). intros x. rewrite X.
+    destruct u, a, b, c, d, x. unfold affine, spun. coords. f_equal; ring.
+  - exists (fun x => apply (transpose m) (sub x p)). split.
+    { intros x. rewrite HE. replace (apply m (apply (transpose m) (sub x p))) with (sub x p).
+      - destruct x, p. coords. f_equal; ring.
+      - apply dot_determines. intros v. rewrite dot_apply.
+        rewrite (rotation_keeps_dot (transpose m)) by (apply transpose_is_rotation; exact R). reflexivity. }
+    assert (AP : forall vm v, holdsv vm s v ->
+      holdsv (tadd (tadd (tscale (tx vm) p1) (tscale (ty vm) p2)) (tscale (tz vm) p3)) s (apply (transpose m) v)).
+    { intros vm v (V1 & V2 & V3). replace (apply (transpose m) v) with
+        (add (add (scale (vx v) (row1 m)) (scale (vy v) (row2 m))) (scale (vz v) (row3 m))).
+      - repeat apply holdsv_add; apply holdsv_scale; assumption.
+      - destruct m as [[] [] []], v. unfold apply, transpose, column1, column2, column3; cbn [row1 row2 row3]. coords.
+        f_equal; ring. }
+    exists (apply (transpose m) a), (apply (transpose m) b), (apply (transpose m) c), (apply (transpose m) (sub d p)).
+    repeat (split; [apply AP; assumption|]). split.
+    + apply AP. destruct HD as (D1 & D2 & D3), Hp as (K1 & K2 & K3).
+      repeat split; unfold sub, add, scale; cbn [tsub tx ty tz vx vy vz]; (eapply holds_eq; [|apply holds_sub; eassumption]; ring).
+    + intros x. rewrite X. destruct m as [[] [] []], a, b, c, d, p, x.
+      unfold affine, apply, transpose, column1, column2, column3; cbn [row1 row2 row3]. coords. f_equal; ring.
 Qed.
 
 Lemma at_rest_ok : holds_pose s at_rest (fun x => x).
@@ -773,7 +905,7 @@ Lemma rise_all_ok os sts gs E E' : strays s sts gs E E' -> forall T F o x X' u, 
   let (T', w) := rise_all os sts gs T in
   holds_pose s T' (fun y => E (F y)) /\ isometry (fun y => E (F y)) /\ off_by (upper_plus u w) (E (F x)) (E' X').
 Proof.
-  unfold off_by. induction 1 as [gs E E' HE HE' | st sts g gs E E' M M' N N' HS IE HG HM IH HN HN'];
+  unfold off_by. induction 1 as [gs E E' HE HE' | st sts g gs E E' M M' N N' HS IE OE HG HM IH HN HN'];
     intros T F o x X' u HT IF I C H.
   - replace (rise_all os [] gs T) with (T, Some (upper_const 0)) by (destruct gs; reflexivity). split; [|split].
     + destruct HT as (a & b & c & d & HA & HB & HC & HD & X). exists a, b, c, d.
@@ -792,28 +924,76 @@ Proof.
       rewrite <- A. apply below_plus; [|exact B2]. rewrite (IE _ _). exact B1.
 Qed.
 
+(** X' is where E' takes it from: E' keeps distances, so what comes before the step is off by no more. *)
+Lemma fall_all_ok os sts gs E E' : strays s sts gs E E' -> forall T F o x X' u, holds_pose s T F -> isometry F ->
+  has os o -> covers s o x -> off_by u (F x) X' ->
+  let (T', w) := fall_all os sts gs T in
+  exists Y Z', holds_pose s T' Y /\ isometry Y /\ E (Y x) = F x /\ E' Z' = X' /\ off_by (upper_plus u w) (Y x) Z'.
+Proof.
+  unfold off_by. induction 1 as [gs E E' HE HE' | st sts g gs E E' M M' N N' HS IE OE HG HM IH HN HN'];
+    intros T F o x X' u HT IF I C H.
+  - replace (fall_all os [] gs T) with (T, Some (upper_const 0)) by (destruct gs; reflexivity).
+    exists F, X'. split; [exact HT|]. split; [exact IF|]. split; [apply HE|]. split; [apply HE'|].
+    rewrite <- (Rplus_0_r (norm _)). apply below_plus; [exact H | apply below_const; rewrite V_0; lra].
+  - cbn [fall_all]. destruct (sink_ok st E T F HS HT) as (J & EJ & HT1). destruct (OE X') as [Z1 EZ].
+    assert (IJ : isometry (fun y => J (F y))).
+    { intros y z. rewrite <- (step_keeps s st E _ _ HS), !EJ. apply IF. }
+    pose proof (move_ok os g (sink st T) E E' _ o x HG HT1 IJ I C) as B2. cbv beta in B2.
+    assert (H1 : below_opt (upper_plus u (move os g (sink st T))) s (norm (sub Z1 (J (F x))))).
+    { eapply below_opt_weaken; [|apply below_plus; [exact H | exact B2]]. rewrite <- (IE _ _), EZ.
+      eapply Rle_trans; [apply (triangle_of _ (F x))|]. apply Rplus_le_compat_l. rewrite <- (EJ (F x)) at 1.
+      apply Req_le. apply norm_of_dots. coords. ring. }
+    specialize (IH (sink st T) (fun y => J (F y)) o x Z1 (upper_plus u (move os g (sink st T))) HT1 IJ I C H1).
+    destruct (fall_all os sts gs (sink st T)) as [T2 w]. destruct IH as (Y & Z' & HT2 & IY & EY & EZ' & B). exists Y, Z'.
+    split; [exact HT2|]. split; [exact IY|]. split; [rewrite HN, EY; apply EJ|]. split; [rewrite HN', EZ'; exact EZ|].
+    assert (A : forall a b c, below_opt (upper_plus (upper_plus a b) c) s = below_opt (upper_plus a (upper_plus b c)) s).
+    { intros [a|] [b|] [c|]; cbn [upper_plus]; try reflexivity. unfold upper_add; cbn [u0 u1 u2]. rewrite !Z.add_assoc. reflexivity. }
+    rewrite <- A. exact B.
+Qed.
+
 Variable fs : tree.
 Variable gs : list (list (option give)).
 Variables P P' : nat -> vec -> vec.
 Hypothesis child : forall i p sts g, nth_error fs i = Some (p, sts) -> nth_error gs i = Some g ->
   exists E E', strays s sts g E E' /\ (forall x, P (S i) x = P p (E x)) /\ (forall x, P' (S i) x = P' p (E' x)).
 
-(** The point X of frame f, and where it may be, seen from frame c. *)
-Definition seen_from (c : nat) (u : option upper) (f : nat) (X X' : vec) : Prop :=
-  exists z z', P f X = P c z /\ P' f X' = P' c z' /\ off_by u z z'.
+(** The point that is at X in the world on the motion, and may be at X' instead, seen from frame c. *)
+Definition seen_from (c : nat) (u : option upper) (X X' : vec) : Prop :=
+  exists z z', X = P c z /\ X' = P' c z' /\ off_by u z z'.
+Definition seen (v : view) (x X X' : vec) : Prop :=
+  exists F z', holds_pose s (v_pose v) F /\ isometry F /\ X = P (v_frame v) (F x) /\ X' = P' (v_frame v) z' /\
+    off_by (v_stray v) (F x) z'.
 
-Lemma moves_ok fuel os o x : has os o -> covers s o x -> forall i T F u X', holds_pose s T F -> isometry F ->
-  off_by u (F x) X' -> forall c w, In (c, w) (moves fuel fs gs os i T u) -> seen_from c w i (F x) X'.
+Lemma seen_is_from v x X X' : seen v x X X' -> seen_from (v_frame v) (v_stray v) X X'.
+Proof. intros (F & z' & _ & _ & E & E' & B). exists (F x), z'. auto. Qed.
+
+Lemma moves_ok fuel os o x X X' : has os o -> covers s o x -> forall v, seen v x X X' ->
+  forall v', In v' (moves fuel fs gs os v) -> seen v' x X X'.
 Proof.
-  intros I C. induction fuel as [|n IH]; intros i T F u X' HT IF H c w; cbn [moves In].
-  - intros [[= <- <-]|[]]. exists (F x), X'. auto.
-  - intros [[= <- <-]|J]; [exists (F x), X'; auto|]. destruct i as [|j]; [destruct J|].
-    destruct (nth_error fs j) as [[p sts]|] eqn:N; [|destruct J]. destruct (nth_error gs j) as [g|] eqn:G; [|destruct J].
-    destruct (child j p sts g N G) as (E & E' & HS & X1 & X2).
-    pose proof (rise_all_ok os sts g E E' HS T F o x X' u HT IF I C H) as K.
-    destruct (rise_all os sts g T) as [T1 v]. destruct K as (HT1 & I1 & B1).
-    destruct (IH p T1 _ _ _ HT1 I1 B1 c w J) as (z & z' & Z1 & Z2 & B). exists z, z'.
-    rewrite X1, X2. auto.
+  intros I C. induction fuel as [|n IH]; intros v H v'; cbn [moves In]; (intros [<-|J]; [exact H|]); [destruct J|].
+  destruct v as [[|j] T u]; cbn [v_frame v_pose v_stray] in *; [destruct J|].
+  destruct (nth_error fs j) as [[p sts]|] eqn:N; [|destruct J]. destruct (nth_error gs j) as [g|] eqn:G; [|destruct J].
+  destruct (child j p sts g N G) as (E & E' & HS & X1 & X2).
+  destruct H as (F & z' & HT & IF & EX & EX' & B). cbn [v_frame v_pose v_stray] in *.
+  pose proof (rise_all_ok os sts g E E' HS T F o x z' u HT IF I C B) as K.
+  destruct (rise_all os sts g T) as [T1 w]. destruct K as (HT1 & I1 & B1).
+  apply (IH (View p T1 (upper_plus u w))); [|exact J].
+  exists (fun y => E (F y)), (E' z'). cbn [v_frame v_pose v_stray]. rewrite EX, EX', X1, X2. auto.
+Qed.
+
+Lemma descend_ok os o x X X' : has os o -> covers s o x -> forall l v, seen v x X X' ->
+  forall v', In v' (descend fs gs os v l) -> seen v' x X X'.
+Proof.
+  intros I C. induction l as [|[|j] rest IH]; intros v H v'; cbn [descend]; try (intros []).
+  destruct (nth_error fs j) as [[p sts]|] eqn:N; [|intros []]. destruct (nth_error gs j) as [g|] eqn:G; [|intros []].
+  destruct (Nat.eqb_spec p (v_frame v)) as [->|_]; [|intros []].
+  destruct (child j _ sts g N G) as (E & E' & HS & X1 & X2).
+  destruct H as (F & z' & HT & IF & EX & EX' & B).
+  pose proof (fall_all_ok os sts g E E' HS (v_pose v) F o x z' (v_stray v) HT IF I C B) as K.
+  destruct (fall_all os sts g (v_pose v)) as [T1 w]. destruct K as (Y & Z' & HT1 & IY & EY & EZ & B1).
+  assert (SEEN : seen (View (S j) T1 (upper_plus (v_stray v) w)) x X X').
+  { exists Y, Z'. cbn [v_frame v_pose v_stray]. rewrite X1, X2, EY, EZ. auto. }
+  intros [<-|J]; [exact SEEN | exact (IH _ SEEN v' J)].
 Qed.
 End AtOneTime.
 
@@ -828,7 +1008,7 @@ Definition plays_of (w : world) (p : spiece) : plays :=
 
 Lemma strays_none s sts gs E E' : strays s sts gs E E' -> forallb is_none gs = true -> forall x, E' x = E x.
 Proof.
-  induction 1 as [gs E E' HE HE' | st sts g gs E E' M M' N N' HS IE HG HM IH HN HN']; intros K x.
+  induction 1 as [gs E E' HE HE' | st sts g gs E E' M M' N N' HS IE OE HG HM IH HN HN']; intros K x.
   - rewrite HE, HE'. reflexivity.
   - cbn [forallb] in K. apply andb_true_iff in K. destruct K as [K1 K2]. destruct g; [discriminate|]. cbn [moves_by] in HG.
     rewrite HN, HN', HG, (IH K2). reflexivity.
@@ -836,7 +1016,7 @@ Qed.
 
 Lemma strays_isometries s sts gs E E' : strays s sts gs E E' -> isometry E /\ isometry E'.
 Proof.
-  induction 1 as [gs E E' HE HE' | st sts g gs E E' M M' N N' HS IE HG HM [IM IM'] HN HN'].
+  induction 1 as [gs E E' HE HE' | st sts g gs E E' M M' N N' HS IE OE HG HM [IM IM'] HN HN'].
   - split; intros x y; [rewrite !HE | rewrite !HE']; reflexivity.
   - split; intros x y; [rewrite !HN, (step_keeps s st E _ _ HS); apply IM | rewrite !HN', (IE _ _); apply IM'].
 Qed.
@@ -884,6 +1064,8 @@ Proof.
   apply strays_first with (E := O) (E' := fun x => O (G0 x)) (M := M) (M' := M').
   - apply placed_ok. exact HO.
   - intros x y. rewrite (IO _ _). apply (pose_off_isometry _ _ HG).
+  - intros y. destruct (step_onto s _ _ (placed_ok s _ _ HO) y) as [z <-]. destruct (pose_off_onto _ _ HG z) as [x <-].
+    exists x. reflexivity.
   - apply pose_off_moves; assumption.
   - apply (elements_stray s w (at_time pc t) (state_at (spiece_of pc) tmodel) _ _ _ Hs); [apply state_ok; assumption | exact HM].
   - reflexivity.
@@ -918,27 +1100,25 @@ Proof.
     split; intros x y; [rewrite !X, (I _ _); apply IE | rewrite !X', (I' _ _); apply IE'].
 Qed.
 
-Lemma still_in_ok : p_any pl = false -> forall fuel i X c u, In (c, u) (still_in fuel fs i) -> seen_from s P P' c u i X X.
+Lemma still_in_ok : p_any pl = false -> forall fuel i x v, In v (still_in fuel fs i) ->
+  seen_from s P P' (v_frame v) (v_stray v) (P i x) (P' i x).
 Proof.
   intros A. assert (Z0 : forall x : vec, off_by s (Some (upper_const 0)) x x).
   { intros x. unfold off_by, below_opt. apply below_const. rewrite V_0. apply Req_le. rewrite <- norm_zero. f_equal. coords. f_equal; ring. }
-  induction fuel as [|n IH]; intros i X c u; cbn [still_in In].
-  - intros [[= <- <-]|[]]. exists X, X. auto.
-  - intros [[= <- <-]|J]; [exists X, X; auto|]. destruct i as [|j]; [destruct J|].
-    destruct (nth_error fs j) as [[k sts]|] eqn:N; [|destruct J].
-    assert (L : (j < length (frames w))%nat) by (rewrite <- (proj1 fs_gs_length); apply nth_error_Some; congruence).
-    destruct (nth_error (p_gives pl) j) as [g|] eqn:G; [|apply nth_error_None in G; pose proof (proj2 fs_gs_length); lia].
-    destruct (frame_strays j k sts g N G) as (E & E' & HS & X1 & X2).
-    assert (K : forallb is_none g = true).
-    { unfold pl, plays_of in A. cbn [p_any] in A. apply negb_false_iff in A. rewrite forallb_forall in A.
-      apply A. exact (nth_error_In _ _ G). }
-    destruct (IH k (E X) c u J) as (z & z' & Z1 & Z2 & B). exists z, z'.
-    rewrite X1, X2, (strays_none _ _ _ _ _ HS K). auto.
+  induction fuel as [|n IH]; intros i x v; cbn [still_in In]; (intros [<-|J]; [exists x, x; auto|]); [destruct J|].
+  destruct i as [|j]; [destruct J|]. destruct (nth_error fs j) as [[k sts]|] eqn:N; [|destruct J].
+  assert (L : (j < length (frames w))%nat) by (rewrite <- (proj1 fs_gs_length); apply nth_error_Some; congruence).
+  destruct (nth_error (p_gives pl) j) as [g|] eqn:G; [|apply nth_error_None in G; pose proof (proj2 fs_gs_length); lia].
+  destruct (frame_strays j k sts g N G) as (E & E' & HS & X1 & X2).
+  assert (K : forallb is_none g = true).
+  { unfold pl, plays_of in A. cbn [p_any] in A. apply negb_false_iff in A. rewrite forallb_forall in A.
+    apply A. exact (nth_error_In _ _ G). }
+  rewrite X1, X2, (strays_none _ _ _ _ _ HS K). exact (IH k (E x) v J).
 Qed.
 
 (** Two points keep their distance but for how far both are off, seen from one frame. *)
-Lemma seen_together c u v f g X X' Y Y' : (c <= length (frames w))%nat -> seen_from s P P' c u f X X' -> seen_from s P P' c v g Y Y' ->
-  exists r, 0 <= r /\ below_opt (upper_plus u v) s r /\ norm (sub (P f X) (P g Y)) - r <= norm (sub (P' f X') (P' g Y')).
+Lemma seen_together c u v X X' Y Y' : (c <= length (frames w))%nat -> seen_from s P P' c u X X' -> seen_from s P P' c v Y Y' ->
+  exists r, 0 <= r /\ below_opt (upper_plus u v) s r /\ norm (sub X Y) - r <= norm (sub X' Y').
 Proof.
   intros L (z & z' & Z1 & Z2 & Bz) (y & y' & Y1 & Y2 & By). destruct (frames_isometric c c (le_n _) L) as [I I'].
   exists (norm (sub z' z) + norm (sub y' y)). pose proof (norm_nonneg (sub z' z)). pose proof (norm_nonneg (sub y' y)).

@@ -12,28 +12,6 @@ Proof. rewrite Rabs_R0. lra. Qed.
 
 (** ** Every point of the world is one of each frame *)
 
-Lemma dot_determines a b : (forall u, dot u a = dot u b) -> a = b.
-Proof.
-  intros H. pose proof (H (Vec 1 0 0)) as X. pose proof (H (Vec 0 1 0)) as Y. pose proof (H (Vec 0 0 1)) as Z0.
-  destruct a as [a1 a2 a3], b as [b1 b2 b3]. unfold dot in *; cbn [vx vy vz] in *. f_equal; lra.
-Qed.
-
-Lemma step_onto s st E : holds_step s st E -> forall y, exists x, E x = y.
-Proof.
-  intros [km snm csm k sn cs F Hk Hsn Hcs K S HF | km wm k way F Hk Hw HF | um cm u c F Hu Hc K HF
-         | a b c pm m p F Ha Hb Hc Hp R HF] y.
-  - exists (turned k (- sn) cs y). rewrite HF. apply dot_determines. intros v.
-    rewrite dot_turned, turned_keeps_dot; [reflexivity | exact K | rewrite <- S; ring].
-  - exists (add y (scale (- way) k)). rewrite HF. destruct y as [y1 y2 y3]. unfold add, scale; cbn [vx vy vz]. f_equal; ring.
-  - exists (spun (scale (-1) u) c y). rewrite HF. apply dot_determines. intros v.
-    rewrite dot_spun, spun_keeps_dot; [reflexivity|]. rewrite <- K. unfold dot, scale; cbn [vx vy vz]. ring.
-  - exists (apply (transpose m) (sub y p)). rewrite HF.
-    replace (apply m (apply (transpose m) (sub y p))) with (sub y p).
-    + destruct y as [y1 y2 y3], p as [p1 p2 p3]. unfold sub, add, scale; cbn [vx vy vz]. f_equal; ring.
-    + apply dot_determines. intros v. rewrite dot_apply.
-      rewrite (rotation_keeps_dot (transpose m)) by (apply transpose_is_rotation; exact R). reflexivity.
-Qed.
-
 Lemma steps_onto s sts E : holds_steps s sts E -> forall y, exists x, E x = y.
 Proof.
   induction 1 as [E HE | st sts E M N HS HM IH HN]; intros y; [exists y; apply HE|].
