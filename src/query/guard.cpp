@@ -57,6 +57,14 @@ void requireFinite(double x, const char* what) {
   if (!std::isfinite(x)) throw std::invalid_argument(std::string(what) + " is not finite");
 }
 
+/// A time that is no more than a duration after another one, whatever is rounded. (Of times that are near each other
+/// the difference is exact.)
+double noLaterThan(double begin, double duration) {
+  double end = begin + duration;
+  while (end > begin && end - begin > duration) end = std::nextafter(end, begin);
+  return end;
+}
+
 /// A range of the trajectory's time, and how long objects may move meanwhile, in s: linear over the range.
 struct Range {
   double from, to;
@@ -89,6 +97,7 @@ struct Guard::Impl {
   void settleBraking(std::initializer_list<double> speeds);
   double slowest() const { return std::max(0.0, path_speed - braking * options.period); }
   bool certify(const Plan& plan);
+  double stopOf(const Plan& plan) const;
   double end() const { return path->end(); }
 
   const std::shared_ptr<const KinematicTree> tree;
@@ -113,9 +122,11 @@ struct Guard::Impl {
 };
 
 /// No point of a body is farther from the origin of a joint below which it is than the lengths on the way add up to.
+/// Slides may stray.
 void Guard::Impl::measureRobot() {
   std::fill(lever.begin(), lever.end(), 0);
   reach = 0;
+  const std::vector<JointTolerance>& of_joint = manager->impl_->setup.jointTolerances();
   for (const ManagedBody& body : manager->impl_->registry.links()) {
     if (body.empty()) continue;
     double length = body.offset.isometry().translation().norm() + body.shape->view().extent;
@@ -130,6 +141,7 @@ void Guard::Impl::measureRobot() {
       const double multiple = joint.mimics ? std::abs(joint.mimic.multiplier) : 1;
       length += multiple * path->largest().segment(tree->jointVariable(j), tree->numVariables(j)).sum();
       if (joint.mimics) length += std::abs(joint.mimic.offset);
+      if (!of_joint.empty()) length += of_joint[static_cast<std::size_t>(j)].length;
     }
     reach = std::max(reach, kUp * length);
   }
@@ -165,9 +177,9 @@ void Guard::Impl::begin(const LiveScene::Snapshot& scene, double now, double at)
   manager = &scene.manager;
   const Registry& registry = manager->impl_->registry;
   manager->impl_->requireReady();
-  if (!manager->impl_->setup.isOf(*tree)) {  // levers go by the tree's links and joints
-    throw std::invalid_argument("Guard: the scene is of robot '" + registry.tree()->name() +
-                                "', and the guard was made for robot '" + tree->name() + "', another tree");
+  if (!tree->content().sameAs(registry.tree()->content())) {
+    throw std::invalid_argument("Guard: the scene is of robot '" + registry.tree()->name() + "', the guard of '" +
+                                tree->name() + "', with other links or joints: make both of one tree");
   }
   path->trajectory().requireOf(*registry.tree());
   if (!registry.moving().empty()) {
@@ -208,6 +220,7 @@ bool Guard::Impl::isFree(const Range& range, bool any) {
     if (options.work_budget) {
       if (tests >= options.work_budget) {
         reason = GuardReason::budget;
+        free_until = found_at = std::max(range.from, times[k]);
         return false;
       }
       request.work_budget = options.work_budget - tests;
@@ -273,15 +286,22 @@ void Guard::Impl::settleBraking(std::initializer_list<double> speeds) {
   for (double to = path_time;;) {
     braking = path->brakingOver(path_time, to);
     double needed = to;
-    for (const double speed : speeds) needed = std::max(needed, std::min(end(), path_time + planAt(speed).way));
+    for (const double speed : speeds) needed = std::max(needed, stopOf(planAt(speed)));
     if (needed <= to) return;
     to = needed;
   }
 }
 
+/// The trajectory's time beyond which the robot does not come. If it moves at all, that is later than it is now: its way
+/// may be shorter than the last bit of a time.
+double Guard::Impl::stopOf(const Plan& plan) const {
+  const bool moves = path_speed > 0 || plan.speed > 0;
+  return moves ? std::min(end(), std::nextafter(path_time + plan.way, kInfinity)) : path_time;
+}
+
 bool Guard::Impl::certify(const Plan& plan) {
   const double moving = age + plan.time;
-  return isFree({path_time, std::min(end(), path_time + plan.way), {moving, moving}}, true);
+  return isFree({path_time, stopOf(plan), {moving, moving}}, true);
 }
 
 Guard::Guard(std::shared_ptr<const KinematicTree> tree, GuardOptions options) {
@@ -317,6 +337,8 @@ void Guard::follow(const JointTrajectory& trajectory) {
 
 void Guard::ask(const LiveScene::Snapshot& scene, double now, double path_time, double path_speed,
                 GuardAnswer& answer) {
+  answer.speed = 0;  // an error claims nothing
+  answer.certified = false;
   if (!(path_speed >= 0 && path_speed <= 1)) {
     throw std::invalid_argument("Guard: path_speed is " + shown(path_speed) + ", not in [0, 1]");
   }
@@ -324,11 +346,10 @@ void Guard::ask(const LiveScene::Snapshot& scene, double now, double path_time, 
   guard.begin(scene, now, path_time);
   guard.path_speed = path_speed;
   guard.settleBraking({1, path_speed});
-  answer.valid_until = now + guard.options.reaction + guard.options.period;
+  answer.valid_until = noLaterThan(now, guard.options.reaction + guard.options.period);
   answer.near_at = guard.end();
   const GuardReason seen = guard.reason;
   Impl::Plan chosen = guard.planAt(guard.slowest());
-  answer.certified = false;
   GuardReason why = seen;
   const auto certify = [&](const Impl::Plan& plan) {
     guard.reason = GuardReason::none;
@@ -367,7 +388,7 @@ void Guard::ask(const LiveScene::Snapshot& scene, double now, double path_time, 
   answer.braking = guard.braking;
   if (answer.certified) guard.promised_braking = guard.braking;
   answer.stop_time = chosen.time;
-  answer.stop_at = std::min(guard.end(), guard.path_time + chosen.way);
+  answer.stop_at = guard.stopOf(chosen);
   answer.tests = guard.tests;
 
   const engine::Problem problem = guard.manager->impl_->setup.problem();
@@ -387,6 +408,8 @@ void Guard::ask(const LiveScene::Snapshot& scene, double now, double path_time, 
 }
 
 void Guard::lookAhead(const LiveScene::Snapshot& scene, double now, double path_time, AheadAnswer& answer) {
+  answer.all_free = false;  // an error claims nothing
+  answer.free_until = answer.run_until = -kInfinity;
   Impl& guard = *impl_;
   guard.begin(scene, now, path_time);
   const double from = guard.path_time, to = guard.end();

@@ -71,12 +71,14 @@ std::size_t GuardedPath::pieceAt(double time) const {
   return static_cast<std::size_t>(after - times.begin()) - 1;
 }
 
-/// The bin of a time, or the one before it: their begins are rounded.
+/// No bin before it has a part of what is at a time or later. Begins are rounded, by less than the last bit of a time.
+/// So bins that are shorter than that begin at the same time, and the bin of a time is the last one that begins before
+/// it, or the one before that.
 std::size_t GuardedPath::binAt(double time) const {
-  const auto after =
-      std::upper_bound(bins_.begin() + 1, bins_.end(), time, [](double t, const Bin& bin) { return t < bin.begin; });
-  const auto bin = static_cast<std::size_t>(after - bins_.begin()) - 1;
-  return bin > 0 ? bin - 1 : 0;
+  const auto first =
+      std::lower_bound(bins_.begin(), bins_.end(), time, [](const Bin& bin, double t) { return bin.begin < t; });
+  const auto bin = static_cast<std::size_t>(first - bins_.begin());
+  return bin > 2 ? bin - 2 : 0;
 }
 
 /// f(b) for all bins of a range, and for one more at either end.
