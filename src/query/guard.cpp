@@ -9,7 +9,7 @@
 // question names that time, T, for all of its range (engine::Clock).
 //
 // The range. Let r be the reaction, P the period, d the braking (1/s^2), f0 the speed until the answer is followed.
-//   f >= f0: r f0 + P f + f^2 / (2 d),                              T = r + P + f / d
+//   f >= f0: (r + P) f + f^2 / (2 d),                               T = r + P + f / d
 //   f < f0, reached within P: r f0 + (f0^2 - f^2) / (2 d) + (P - (f0 - f) / d) f + f^2 / (2 d),   the same T
 // So the slowest speed that can be promised is f0 - d P. It takes the range r f0 + f0^2 / (2 d) in all, and T = r + f0
 // / d. (If the speed varies, f is its largest value.)
@@ -270,7 +270,7 @@ void Guard::Impl::namePair(BodyRef& body1, BodyRef& body2) const {
 Guard::Impl::Plan Guard::Impl::planAt(double f) const {
   const double f0 = path_speed, P = options.period, r = options.reaction, d = braking;
   const double stop = d < kInfinity ? f / d : 0, way_of_stop = d < kInfinity ? f * f / (2 * d) : 0;
-  if (f >= f0) return {f, kUp * (r * f0 + P * f + way_of_stop), kUp * (r * f0 + P * f), kUp * (r + P + stop)};
+  if (f >= f0) return {f, kUp * ((r + P) * f + way_of_stop), kUp * (r + P) * f, kUp * (r + P + stop)};
   const double slowing = (f0 - f) / d;
   if (slowing >= P) {  // braking all the time
     return {f, kUp * (r * f0 + f0 * f0 / (2 * d)), kUp * r * f0, kUp * (r + f0 / d)};
@@ -292,8 +292,8 @@ void Guard::Impl::settleBraking(std::initializer_list<double> speeds) {
   }
 }
 
-/// The trajectory's time beyond which the robot does not come. If it moves at all, that is later than it is now: its way
-/// may be shorter than the last bit of a time.
+/// The trajectory's time beyond which the robot does not come. If it moves at all, that is later than it is now: its
+/// way may be shorter than the last bit of a time.
 double Guard::Impl::stopOf(const Plan& plan) const {
   const bool moves = path_speed > 0 || plan.speed > 0;
   return moves ? std::min(end(), std::nextafter(path_time + plan.way, kInfinity)) : path_time;

@@ -76,6 +76,23 @@ TEST(GuardEdges, AnAnswerCountsNoLongerThanItIsCertified) {
   }
 }
 
+TEST(GuardEdges, AnAnswerMayCountBeforeTheReactionIsOver) {
+  // The cart stands, 0.24 m before the ball. If it goes at f at once, it does so for all of 0.1 + 0.05 s.
+  const Cart cart;
+  GuardOptions options = optionsOf(1);
+  options.reaction = 0.1;
+  options.tries = 20;
+  Guard guard(cart.tree, options);
+  guard.follow(JointTrajectory::linear(*cart.tree, {0, 5}, {VectorXd::Zero(1), VectorXd::Constant(1, 5)}));
+  GuardAnswer answer;
+  guard.ask(*sceneOf(cart, Vector3d(1 + 0.2 + 0.24, 0, 0)), 0, 1, 0, answer);
+  const double f = answer.speed;
+  EXPECT_TRUE(answer.certified);
+  EXPECT_LE(0.15 * f + f * f / 4, 0.24);
+  EXPECT_GE(0.15 * f + f * f / 4, 0.24 - 1e-5);
+  EXPECT_GE(answer.stop_at, 1 + 0.15 * f + f * f / 4);
+}
+
 TEST(GuardEdges, ABudgetThatEndsBetweenTwoPiecesIsNotFree) {
   // The cart meets the ball in the fourth of six pieces, at 3.3.
   const Cart cart;
@@ -140,8 +157,9 @@ TEST(GuardEdges, ASceneOfAnotherRobotIsRefused) {
   const auto other = sliderTree({"rail", "cart"});
   for (int k = 0; k < 50; ++k) {
     other->addLink("tool" + std::to_string(k));
-    other->addJoint(makeJoint("mount" + std::to_string(k), JointType::fixed, k ? "tool" + std::to_string(k - 1) : "cart",
-                              "tool" + std::to_string(k), Vector3d::UnitX(), pose({0.1, 0, 0})));
+    other->addJoint(makeJoint("mount" + std::to_string(k), JointType::fixed,
+                              k ? "tool" + std::to_string(k - 1) : "cart", "tool" + std::to_string(k),
+                              Vector3d::UnitX(), pose({0.1, 0, 0})));
   }
   ArticulatedCollisionManager manager(other);
   manager.bind("tool49", ball(0.1));

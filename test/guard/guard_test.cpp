@@ -363,10 +363,11 @@ TEST(Guard, RangesOfTrajectoriesAreTheSampledOnes) {
     const double f0 = random.oneIn(2) ? 1 : random.uniform(0, 1);
     GuardAnswer answer;
     guard.ask(*scene, 0, at, f0, answer);
-    // The way, written down anew: the longest of all profiles is brake from f0 (or go at once) to f, and stop.
+    // The way, written down anew: the longest of all profiles is f at once, if that is the faster one, else f0 until
+    // the answer counts and braking to f, and a stop.
     const double d = answer.braking, P = options.period, r = options.reaction, f = answer.speed;
     ASSERT_TRUE(std::isfinite(d));
-    double s = r * f0, v = std::max(f0, f);
+    double s = r * std::max(f0, f), v = std::max(f0, f);
     const double step = 1e-4;
     double t = 0;
     for (; t < P; t += step) {
