@@ -211,8 +211,9 @@ void FrameSweep::setStrays(const std::vector<JointTolerance>& of_joint) {
     step.stray = 0;
     if (from.joint < 0 || of_joint.empty()) continue;
     const JointTolerance& tolerance = of_joint[static_cast<std::size_t>(from.joint)];
-    // A planar joint slides by two factors: its length is that of both together, so the first one has it all.
-    step.stray = engine::turns(step.kind) ? tolerance.angle : from.factor == 0 ? tolerance.length : 0;
+    // A planar joint slides by two factors, and its length is that of both together: either of them may have all of it.
+    // (Bounds along a direction take a slide's own one, so the first factor could not stand for the second.)
+    step.stray = engine::turns(step.kind) ? tolerance.angle : tolerance.length;
   }
 }
 

@@ -57,8 +57,8 @@ void requireFinite(double x, const char* what) {
   if (!std::isfinite(x)) throw std::invalid_argument(std::string(what) + " is not finite");
 }
 
-/// A time that is no more than a duration after another one, whatever is rounded. (Of times that are near each other
-/// the difference is exact.)
+/// A time that is no more than a duration after another one, whatever is rounded. (The difference of two times is exact
+/// where they are near each other.)
 double noLaterThan(double begin, double duration) {
   double end = begin + duration;
   while (end > begin && end - begin > duration) end = std::nextafter(end, begin);

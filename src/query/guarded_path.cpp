@@ -71,9 +71,9 @@ std::size_t GuardedPath::pieceAt(double time) const {
   return static_cast<std::size_t>(after - times.begin()) - 1;
 }
 
-/// No bin before it has a part of what is at a time or later. Begins are rounded, by less than the last bit of a time.
-/// So bins that are shorter than that begin at the same time, and the bin of a time is the last one that begins before
-/// it, or the one before that.
+/// No bin before it has a part of what is at a time or later. Begins are rounded, by less than the last bit of a time:
+/// bins that are shorter than that begin at the same time. So a time's bin is, of all that begin before it, the last
+/// one or the one before that.
 std::size_t GuardedPath::binAt(double time) const {
   const auto first =
       std::lower_bound(bins_.begin(), bins_.end(), time, [](const Bin& bin, double t) { return bin.begin < t; });

@@ -89,6 +89,32 @@ TEST(Tube, ASlideBeforeAHalfspace) {
   }
 }
 
+TEST(Tube, APlanarJointSlidesInAnyDirection) {
+  // A cart that may be off by d in the plane across an axis, and a ball at 0.98 d from it, in all directions.
+  const Vector3d axis = Vector3d(1, 2, 3).normalized(), across = axis.unitOrthogonal();
+  const auto tree = std::make_shared<KinematicTree>("cart");
+  tree->addLink("floor");
+  tree->addLink("cart");
+  tree->addJoint(makeJoint("plane", JointType::planar, "floor", "cart", axis));
+  const double d = 0.1, radius = 0.2;
+  for (int k = 0; k < 16; ++k) {
+    ArticulatedCollisionManager manager(tree);
+    manager.bind("cart", ball(radius));
+    manager.setJointTolerance("plane", {0, d});
+    const Vector3d to = pose(Vector3d::Zero(), M_PI * k / 8, axis).linear() * across;
+    manager.registerObject(ball(radius, (2 * radius + 0.98 * d) * to), "ball");
+    manager.setup();
+    EXPECT_FALSE(manager.collide(VectorXd::Zero(3)).isFree()) << k;
+    const CertifiedResult moved = ask(manager, VectorXd::Zero(3), Vector3d(0, 0, 1));
+    EXPECT_FALSE(moved.isFree()) << k;
+    EXPECT_EQ(moved.t_lower, 0) << k;
+    // (Both slides count by themselves: no more than twice d.)
+    manager.setJointTolerance("plane", {0, 0.49 * d});
+    manager.setup();
+    EXPECT_TRUE(manager.collide(VectorXd::Zero(3)).isFree()) << k;
+  }
+}
+
 TEST(Tube, ABodyOnTheAxisIsNotMoved) {
   OneTurn arm;
   const auto hub = ball(0.1);
