@@ -171,10 +171,16 @@ int runCheck(CheckVerb& options) {
     }
   }
 
+  const std::string tolerances = manager.describeTolerances();
   std::optional<Clearance> clearance;
+  std::optional<ToleranceLeft> tolerance_left;
   if (options.clearance) {
     const ClearanceRequest asked = clearanceOf(options.clearance_request, request);
     clearance = trajectory ? manager.clearance(*trajectory, asked) : manager.clearance(*motion, asked);
+    if (!tolerances.empty()) {
+      const ToleranceLeftRequest left = toleranceLeftOf(request);
+      tolerance_left = trajectory ? manager.toleranceLeft(*trajectory, left) : manager.toleranceLeft(*motion, left);
+    }
   }
 
   std::vector<std::string> notes = world.notes(manager);
@@ -191,9 +197,10 @@ int runCheck(CheckVerb& options) {
     });
   }
   Report report{tree, request, result, notes, {}};
-  report.tolerances = manager.describeTolerances();
+  report.tolerances = tolerances;
   setMotion(motion, trajectory, report);
   if (clearance) report.clearance = &*clearance;
+  if (tolerance_left) report.tolerance_left = &*tolerance_left;
 
   world.unwritten.attempt([&] {
     writeViews(options.views, world, manager, trajectory ? RobotMotion(*trajectory) : RobotMotion(*motion), report);

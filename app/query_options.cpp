@@ -42,9 +42,10 @@ void addQueryOptions(CLI::App& verb, CertifiedRequest& request) {
 }
 
 CLI::Option* addClearanceOptions(CLI::App& verb, bool& wanted, ClearanceRequest& request) {
-  CLI::Option* clearance =
-      verb.add_flag("--clearance", wanted, "Also the smallest distance over the whole motion, proven")
-          ->group(kQueryGroup);
+  CLI::Option* clearance = verb.add_flag("--clearance", wanted,
+                                         "Also the smallest distance over the whole motion, proven; with tolerances, "
+                                         "how many times these are free")
+                               ->group(kQueryGroup);
   verb.add_option("--clearance-most", request.most, "Distances beyond this are of no interest, in m")
       ->check(requirePositive)
       ->needs(clearance)
@@ -59,6 +60,15 @@ ClearanceRequest clearanceOf(const ClearanceRequest& request, const CertifiedReq
   out.work_budget = query.work_budget;
   out.ignore_initial_contact = query.ignore_initial_contact;
   out.ignored_margin = query.margin;
+  return out;
+}
+
+ToleranceLeftRequest toleranceLeftOf(const CertifiedRequest& query) {
+  ToleranceLeftRequest out;
+  static_cast<Tolerances&>(out) = query;
+  static_cast<Scope&>(out) = query;
+  out.work_budget = query.work_budget;
+  out.ignore_initial_contact = query.ignore_initial_contact;
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include "fcl_artic/clearance.h"
 #include "fcl_artic/request.h"
+#include "fcl_artic/tolerance_left.h"
 
 namespace fcl_artic::app {
 
@@ -19,5 +20,7 @@ CLI::Option* addClearanceOptions(CLI::App& verb, bool& wanted, ClearanceRequest&
 
 /// The request with the query's scope, budget and ignored pairs, as the clearance of its motion is asked for.
 ClearanceRequest clearanceOf(const ClearanceRequest& request, const CertifiedRequest& query);
+/// The request for the tolerance left, with the query's margins, scope, budget and ignored pairs.
+ToleranceLeftRequest toleranceLeftOf(const CertifiedRequest& query);
 
 }  // namespace fcl_artic::app

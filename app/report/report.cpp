@@ -104,6 +104,21 @@ std::string clearanceText(const KinematicTree& tree, const Clearance& c) {
   return text + (c.within_tolerance ? "" : " (the search ended early)");
 }
 
+std::string toleranceLeftText(const KinematicTree& tree, const ToleranceLeft& left) {
+  const std::string pair = fmt::format("{} and {}", bodyText(tree, left.body1, -1), bodyText(tree, left.body2, -1));
+  std::string text = fmt::format("tolerances times {:.3g} are still free", left.lower);
+  if (left.upper == 0) {
+    text =
+        fmt::format("none: {} {} at t = {:.6g} without any tolerance", pair,
+                    left.certain ? "touch, or are within their margin," : "are nearer than can be decided", left.time);
+  } else if (std::isfinite(left.upper)) {
+    text += fmt::format("; limited by {} at t = {:.6g}: at {:.3g} times they {}", pair, left.time, left.upper,
+                        left.certain ? "may touch, proven" : "can't be proven apart");
+  }
+  if (!left.ignored_initial_contacts.empty()) text += ", the ignored pairs apart";
+  return text + (left.within_accuracy ? "" : " (the search ended early)");
+}
+
 std::string statisticsText(const QueryStatistics& s) {
   return fmt::format(
       "{}, {} left by the swept bounds; {}, {}, {}, {}, {}; {:.3f} ms (culling {:.3f}, narrow phase {:.3f}, report "
@@ -153,17 +168,32 @@ Json bodyJson(const KinematicTree& tree, const BodyRef& body, std::intptr_t prim
   return out;
 }
 
-Json clearanceJson(const KinematicTree& tree, const Clearance& c) {
-  const bool any = std::isfinite(c.upper);
+/// A bracket that a search has found, with the pair and the time of its upper end.
+template <class Found>
+Json foundJson(const KinematicTree& tree, const Found& found) {
+  const bool any = std::isfinite(found.upper);
   Json ignored = Json::array();
-  for (const auto& [a, b] : c.ignored_initial_contacts) ignored.push_back({a.name, b.name});
-  return {{"lower", c.lower},
-          {"upper", any ? Json(c.upper) : Json()},
-          {"t", any ? Json(c.time) : Json()},
-          {"body1", any ? bodyJson(tree, c.body1, -1) : Json()},
-          {"body2", any ? bodyJson(tree, c.body2, -1) : Json()},
-          {"ignored_initial_contacts", ignored},
-          {"within_tolerance", c.within_tolerance}};
+  for (const auto& [a, b] : found.ignored_initial_contacts) ignored.push_back({a.name, b.name});
+  return {{"lower", found.lower},
+          {"upper", any ? Json(found.upper) : Json()},
+          {"t", any ? Json(found.time) : Json()},
+          {"body1", any ? bodyJson(tree, found.body1, -1) : Json()},
+          {"body2", any ? bodyJson(tree, found.body2, -1) : Json()},
+          {"ignored_initial_contacts", ignored}};
+}
+
+Json clearanceJson(const KinematicTree& tree, const Clearance& c) {
+  Json out = foundJson(tree, c);
+  out["within_tolerance"] = c.within_tolerance;
+  return out;
+}
+
+Json toleranceLeftJson(const KinematicTree& tree, const ToleranceLeft& left) {
+  Json out = foundJson(tree, left);
+  out["certain"] = left.certain;
+  out["q_witness"] = left.q_witness.size() > 0 ? valuesJson(tree, left.q_witness) : Json();
+  out["within_accuracy"] = left.within_accuracy;
+  return out;
 }
 
 Json contactJson(const KinematicTree& tree, const CertifiedContact& c) {
@@ -289,6 +319,7 @@ std::string textReport(const Report& r) {
     }
   }
   if (r.clearance) text += entry("clearance", clearanceText(r.tree, *r.clearance));
+  if (r.tolerance_left) text += entry("left", toleranceLeftText(r.tree, *r.tolerance_left));
   if (result.status != Status::free) {
     text += entry("joints", fmt::format("at t = {:.12g}: {}", result.t_lower,
                                         jointsText(r.tree, r.configuration(result.t_lower))));
@@ -322,6 +353,7 @@ nlohmann::ordered_json jsonReport(const Report& r) {
           {"contacts", contacts},
           {"poses", posesJson(r)},
           {"clearance", r.clearance ? clearanceJson(r.tree, *r.clearance) : Json()},
+          {"tolerance_left", r.tolerance_left ? toleranceLeftJson(r.tree, *r.tolerance_left) : Json()},
           {"ignored_initial_contacts", ignored},
           {"never_apart_pairs", result.never_apart_pairs},
           {"unproven_allowed_pairs", result.unproven_allowed_pairs},

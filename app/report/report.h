@@ -11,6 +11,7 @@
 #include "fcl_artic/kinematic_tree.h"
 #include "fcl_artic/request.h"
 #include "fcl_artic/result.h"
+#include "fcl_artic/tolerance_left.h"
 
 namespace fcl_artic::app {
 
@@ -27,7 +28,8 @@ struct Report {
   /// Whether `request` is what `result` answers. If not, as with an answer that comes from elsewhere, it is not
   /// printed.
   bool request_known = true;
-  std::string tolerances = {};  ///< ArticulatedCollisionManager::describeTolerances()
+  std::string tolerances = {};                    ///< ArticulatedCollisionManager::describeTolerances()
+  const ToleranceLeft* tolerance_left = nullptr;  ///< null: not asked for
 };
 
 /// "(0.5, -0.25, 0)": a place, m, in so many digits. No coordinate is "-0", or a 0 that rounding has changed.

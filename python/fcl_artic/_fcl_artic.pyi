@@ -471,6 +471,30 @@ class Clearance:
     @property
     def statistics(self) -> dict[str, Any]: ...
 
+class ToleranceLeft:
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float: ...
+    @property
+    def time(self) -> float: ...
+    @property
+    def pair(self) -> _Pair | None: ...
+    @property
+    def body1(self) -> Body: ...
+    @property
+    def body2(self) -> Body: ...
+    @property
+    def certain(self) -> bool: ...
+    @property
+    def q_witness(self) -> _Doubles | None: ...
+    @property
+    def within_accuracy(self) -> bool: ...
+    @property
+    def ignored_initial_contacts(self) -> list[_Pair]: ...
+    @property
+    def statistics(self) -> dict[str, Any]: ...
+
 class ToolDeviation:
     @property
     def distance_lower(self) -> float: ...
@@ -1082,6 +1106,43 @@ class World:
         work_budget: int = ...,
         progress: _Progress | None = ...,
     ) -> Clearance: ...
+    @overload
+    def tolerance_left(
+        self,
+        q0: npt.ArrayLike,
+        q1: npt.ArrayLike,
+        *,
+        accuracy_relative: float = ...,
+        accuracy_factor: float = ...,
+        most: float = ...,
+        margin: float = ...,
+        added_margin: float = ...,
+        tolerance_time: float = ...,
+        tolerance_distance: float = ...,
+        check_scene: bool = ...,
+        check_self: bool = ...,
+        ignore_initial_contact: bool = ...,
+        work_budget: int = ...,
+        progress: _Progress | None = ...,
+    ) -> ToleranceLeft: ...
+    @overload
+    def tolerance_left(
+        self,
+        q0: JointMotion | JointTrajectory,
+        *,
+        accuracy_relative: float = ...,
+        accuracy_factor: float = ...,
+        most: float = ...,
+        margin: float = ...,
+        added_margin: float = ...,
+        tolerance_time: float = ...,
+        tolerance_distance: float = ...,
+        check_scene: bool = ...,
+        check_self: bool = ...,
+        ignore_initial_contact: bool = ...,
+        work_budget: int = ...,
+        progress: _Progress | None = ...,
+    ) -> ToleranceLeft: ...
     def checked_link_pairs(self) -> list[_Pair]: ...
     def classify_link_pairs(
         self,

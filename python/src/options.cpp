@@ -97,14 +97,25 @@ const std::vector<Option<Request>>& requestOptions() {
   return options;
 }
 
-struct ClearanceCall {
-  ClearanceRequest request;
+/// A search's request. Progress is kept beside it, as in Request.
+template <class SearchRequest>
+struct Search {
+  SearchRequest request;
   py::object progress = py::none();
 };
 
-const std::vector<Option<ClearanceCall>>& clearanceOptions() {
-  using A = ClearanceCall;
+template <class SearchRequest>
+SearchRequest readSearch(const std::vector<Option<Search<SearchRequest>>>& known, const py::kwargs& options,
+                         py::object& progress) {
+  Search<SearchRequest> asked;
+  setAll(asked, known, options);
+  progress = asked.progress;
+  return asked.request;
+}
+
+const std::vector<Option<Search<ClearanceRequest>>>& clearanceOptions() {
   using C = ClearanceRequest;
+  using A = Search<C>;
   const auto of = [](const char* name, auto member) { return option<A>(name, kRequest, member); };
   static const std::vector<Option<A>> options{of("tolerance_relative", &C::tolerance_relative),
                                               of("tolerance_distance", &C::tolerance_distance),
@@ -114,6 +125,25 @@ const std::vector<Option<ClearanceCall>>& clearanceOptions() {
                                               of("ignore_initial_contact", &C::ignore_initial_contact),
                                               of("ignored_margin", &C::ignored_margin),
                                               of("work_budget", &C::work_budget),
+                                              option<A>("progress", kItself, &A::progress)};
+  return options;
+}
+
+const std::vector<Option<Search<ToleranceLeftRequest>>>& toleranceLeftOptions() {
+  using T = ToleranceLeftRequest;
+  using A = Search<T>;
+  const auto of = [](const char* name, auto member) { return option<A>(name, kRequest, member); };
+  static const std::vector<Option<A>> options{of("accuracy_relative", &T::accuracy_relative),
+                                              of("accuracy_factor", &T::accuracy_factor),
+                                              of("most", &T::most),
+                                              of("margin", &T::margin),
+                                              of("added_margin", &T::added_margin),
+                                              of("tolerance_time", &T::tolerance_time),
+                                              of("tolerance_distance", &T::tolerance_distance),
+                                              of("check_scene", &T::check_scene),
+                                              of("check_self", &T::check_self),
+                                              of("ignore_initial_contact", &T::ignore_initial_contact),
+                                              of("work_budget", &T::work_budget),
                                               option<A>("progress", kItself, &A::progress)};
   return options;
 }
@@ -210,10 +240,11 @@ Request readRequest(const py::kwargs& options) {
 }
 
 ClearanceRequest readClearanceRequest(const py::kwargs& options, py::object& progress) {
-  ClearanceCall asked;
-  setAll(asked, clearanceOptions(), options);
-  progress = asked.progress;
-  return asked.request;
+  return readSearch(clearanceOptions(), options, progress);
+}
+
+ToleranceLeftRequest readToleranceLeftRequest(const py::kwargs& options, py::object& progress) {
+  return readSearch(toleranceLeftOptions(), options, progress);
 }
 
 std::string text(const Request& request) {

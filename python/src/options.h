@@ -9,6 +9,7 @@
 #include "errors.h"
 #include "fcl_artic/clearance.h"
 #include "fcl_artic/request.h"
+#include "fcl_artic/tolerance_left.h"
 
 namespace fcl_artic::python {
 
@@ -34,6 +35,8 @@ void applyOptions(Request& request, const py::kwargs& options);
 
 /// The request for a clearance.
 ClearanceRequest readClearanceRequest(const py::kwargs& options, py::object& progress);
+/// The request for the tolerance left.
+ToleranceLeftRequest readToleranceLeftRequest(const py::kwargs& options, py::object& progress);
 /// The request as an expression, without options that have their default.
 std::string text(const Request& request);
 

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "fcl_artic/clearance.h"
+#include "fcl_artic/tolerance_left.h"
 #include "guard_files.h"
 
 namespace fcl_artic::python {
@@ -236,6 +237,34 @@ void bindContacts(py::class_<Result>& bound) {
       .def_property_readonly("statistics", [](const Result& r) { return statisticsOf(r.statistics); });
 }
 
+py::object witnessOf(const Eigen::VectorXd& q) {
+  return q.size() > 0 ? py::object(arrayOf(q)) : py::object(py::none());
+}
+
+/// ": A and B" of what a search has found; empty: it has no pair.
+template <class Found>
+std::string pairText(const Found& found) {
+  return std::isfinite(found.upper) ? ": " + found.body1.name + " and " + found.body2.name : "";
+}
+
+/// Properties of all searches' answers.
+template <class Found>
+void bindFound(py::class_<Found>& bound) {
+  bound.def_readonly("lower", &Found::lower)
+      .def_readonly("upper", &Found::upper)
+      .def_readonly("time", &Found::time)
+      .def_property_readonly("pair",
+                             [](const Found& found) -> py::object {
+                               if (!std::isfinite(found.upper)) return py::none();
+                               return py::make_tuple(found.body1.name, found.body2.name);
+                             })
+      .def_readonly("body1", &Found::body1)
+      .def_readonly("body2", &Found::body2)
+      .def_property_readonly("ignored_initial_contacts",
+                             [](const Found& found) { return namesOf(found.ignored_initial_contacts); })
+      .def_property_readonly("statistics", [](const Found& found) { return statisticsOf(found.statistics); });
+}
+
 void bindCertificate(py::module_& module) {
   py::class_<Certificate>(module, "Certificate", "The proof of an answer, which fcl_artic_verify proves again.")
       .def_property_readonly(
@@ -310,11 +339,7 @@ void bindResults(py::module_& module) {
       .def_readonly("t_lower", &CertifiedContact::t_lower)
       .def_readonly("t_upper", &CertifiedContact::t_upper)
       .def_readonly("certain", &CertifiedContact::certain)
-      .def_property_readonly("q_witness",
-                             [](const CertifiedContact& c) {
-                               return c.q_witness.size() > 0 ? py::object(arrayOf(c.q_witness))
-                                                             : py::object(py::none());
-                             })
+      .def_property_readonly("q_witness", [](const CertifiedContact& c) { return witnessOf(c.q_witness); })
       .def("__repr__", [](const CertifiedContact& c) { return "<Contact: " + printed(c) + ">"; })
       .def(py::pickle([](const CertifiedContact& c) { return state(c); }, &contactOfState));
 
@@ -356,27 +381,15 @@ void bindResults(py::module_& module) {
       .def("__repr__", [](const CertifiedPairResult& r) { return "<PairResult: " + printed(r) + ">"; })
       .def(py::pickle(&pairResultState, &pairResultOfState));
 
-  py::class_<Clearance>(module, "Clearance", "The smallest distance over a whole motion: lower <= distance <= upper.")
-      .def_readonly("lower", &Clearance::lower)
-      .def_readonly("upper", &Clearance::upper)
-      .def_readonly("time", &Clearance::time)
-      .def_property_readonly("pair",
-                             [](const Clearance& c) -> py::object {
-                               if (!std::isfinite(c.upper)) return py::none();
-                               return py::make_tuple(c.body1.name, c.body2.name);
-                             })
-      .def_readonly("body1", &Clearance::body1)
-      .def_readonly("body2", &Clearance::body2)
-      .def_readonly("within_tolerance", &Clearance::within_tolerance)
-      .def_property_readonly("ignored_initial_contacts",
-                             [](const Clearance& c) { return namesOf(c.ignored_initial_contacts); })
-      .def_property_readonly("statistics", [](const Clearance& c) { return statisticsOf(c.statistics); })
-      .def(
-          "__repr__",
-          [](const Clearance& c) {
-            const std::string pair = std::isfinite(c.upper) ? ": " + c.body1.name + " and " + c.body2.name : "";
-            return py::str("<Clearance: from {:.6g} to {:.6g} m, t = {:.6g}{}>").format(c.lower, c.upper, c.time, pair);
-          })
+  py::class_<Clearance> clearance(module, "Clearance",
+                                  "The smallest distance over a whole motion: lower <= distance <= upper.");
+  bindFound(clearance);
+  clearance.def_readonly("within_tolerance", &Clearance::within_tolerance)
+      .def("__repr__",
+           [](const Clearance& c) {
+             return py::str("<Clearance: from {:.6g} to {:.6g} m, t = {:.6g}{}>")
+                 .format(c.lower, c.upper, c.time, pairText(c));
+           })
       .def(py::pickle(
           [](const Clearance& c) {
             return py::make_tuple(c.lower, c.upper, c.time, state(c.body1), state(c.body2), c.within_tolerance,
@@ -393,6 +406,38 @@ void bindResults(py::module_& module) {
             c.statistics = statisticsOfDict(s[6]);
             c.ignored_initial_contacts = pairsOfState(s[7]);
             return c;
+          }));
+
+  py::class_<ToleranceLeft> left(module, "ToleranceLeft",
+                                 "How many times all tolerances may be as large: lower is free, upper is not proven.");
+  bindFound(left);
+  left.def_readonly("certain", &ToleranceLeft::certain)
+      .def_property_readonly("q_witness", [](const ToleranceLeft& l) { return witnessOf(l.q_witness); })
+      .def_readonly("within_accuracy", &ToleranceLeft::within_accuracy)
+      .def("__repr__",
+           [](const ToleranceLeft& l) {
+             return py::str("<ToleranceLeft: from {:.6g} to {:.6g} times, t = {:.6g}{}>")
+                 .format(l.lower, l.upper, l.time, pairText(l));
+           })
+      .def(py::pickle(
+          [](const ToleranceLeft& l) {
+            return py::make_tuple(l.lower, l.upper, l.time, state(l.body1), state(l.body2), l.certain,
+                                  arrayOf(l.q_witness), l.within_accuracy, statisticsOf(l.statistics),
+                                  state(l.ignored_initial_contacts));
+          },
+          [](const py::tuple& s) {
+            ToleranceLeft l;
+            l.lower = py::cast<double>(s[0]);
+            l.upper = py::cast<double>(s[1]);
+            l.time = py::cast<double>(s[2]);
+            l.body1 = bodyOfState(s[3]);
+            l.body2 = bodyOfState(s[4]);
+            l.certain = py::cast<bool>(s[5]);
+            l.q_witness = vectorOf(s[6], "q_witness");
+            l.within_accuracy = py::cast<bool>(s[7]);
+            l.statistics = statisticsOfDict(s[8]);
+            l.ignored_initial_contacts = pairsOfState(s[9]);
+            return l;
           }));
 }
 

@@ -378,19 +378,37 @@ CertifiedResult askAgain(py::handle path) {
   return result;
 }
 
-Clearance clearance(const World& world, py::handle q0, py::handle q1, const py::kwargs& options) {
+/// Asks a search.
+/// @param read  its request's reader.
+/// @param search  (manager, motion or trajectory, request)
+template <class Read, class Search>
+auto searchOn(const World& world, py::handle q0, py::handle q1, const py::kwargs& options, const Read& read,
+              const Search& search) {
   py::object progress;
-  ClearanceRequest request = readClearanceRequest(options, progress);
+  auto request = read(options, progress);
   const Question question = questionOf(world, q0, q1);
   Watch watch(std::move(progress));
   request.progress = [&watch](double lower, double upper) {
     return watch.goOn(upper > 0 && std::isfinite(upper) ? lower / upper : 0);
   };
-  const Clearance found = world.manager().ask([&](const ArticulatedCollisionManager& manager) {
-    return std::visit([&](const auto& motion) { return manager.clearance(motion, request); }, question);
+  const auto found = world.manager().ask([&](const ArticulatedCollisionManager& manager) {
+    return std::visit([&](const auto& motion) { return search(manager, motion, request); }, question);
   });
   watch.finish();
   return found;
+}
+
+Clearance clearance(const World& world, py::handle q0, py::handle q1, const py::kwargs& options) {
+  return searchOn(
+      world, q0, q1, options, readClearanceRequest,
+      [](const auto& manager, const auto& motion, const auto& request) { return manager.clearance(motion, request); });
+}
+
+ToleranceLeft toleranceLeft(const World& world, py::handle q0, py::handle q1, const py::kwargs& options) {
+  return searchOn(world, q0, q1, options, readToleranceLeftRequest,
+                  [](const auto& manager, const auto& motion, const auto& request) {
+                    return manager.toleranceLeft(motion, request);
+                  });
 }
 
 std::shared_ptr<const VisibilityCuller> cullerOf(VisibilityExecutor executor, const VisibilityOptions& options) {
@@ -625,6 +643,10 @@ void bindQueries(py::class_<World>& world) {
           "ignore_initial_contact=True, pairs that touch at its begin, or are within their margin (ignored_margin, or\n"
           "their own), are left out.",
           py::arg("q0"), py::arg("q1") = py::none())
+      .def("tolerance_left", &toleranceLeft,
+           "How many times all tolerances of the world together may be as large, so that the whole way is still free.\n"
+           "With ignore_initial_contact=True, pairs that check() ignores are left out.",
+           py::arg("q0"), py::arg("q1") = py::none())
       .def("remove_self", &removeSelf,
            "Drops points, as a sensor has seen them, that lie in or within `padding` of what links carry at q: the\n"
            "other rows, in their order, and how many were dropped. Rows that are not finite stay. `pose` is that of "

@@ -255,7 +255,7 @@ def public_names():
             names[component] = path
             continue
         for match in re.finditer(r"^\s*(?:class|struct|enum class)\s+(?:FCL_ARTIC_EXPORT\s+)?(\w+)\s*(?:final\s*)?[:{;]", text, re.M):
-            if match[1] not in ("Impl", "QueryContext", "Turn", "Start", "Step", "Index"):
+            if match[1] not in ("Impl", "QueryContext", "MotionQueries", "Turn", "Start", "Step", "Index"):
                 names[match[1]] = path
         for match in re.finditer(r"^using (\w+) =", text, re.M):
             names[match[1]] = path

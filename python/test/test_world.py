@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Questions to a world."""
 import math
+import pickle
 import subprocess
 import threading
 import time
@@ -633,3 +634,29 @@ def test_tolerances(robot):
         world.set_joint_tolerance(angle=0.1, joint="jiont")
     world.reset_tolerances()
     assert world.tolerances == "" and world.check(q, q).free
+
+
+def test_tolerance_left(robot):
+    world = fcl_artic.World(robot)
+    world.add("ball", fcl_artic.sphere(0.1), pose=[2.5, 0, 0])
+    q = np.zeros(6)
+    with pytest.raises(RuntimeError, match="setJointTolerances"):
+        world.tolerance_left(q, q)
+    world.set_joint_tolerance(angle=0.01)
+    world.set_object_tolerance("ball", length=0.01)
+    left = world.tolerance_left(q, q, check_self=False)
+    assert 1 < left.lower <= left.upper <= 1.011 * left.lower and left.within_accuracy
+    assert left.pair[1] == left.body2.name == "ball" and left.time == 0 and left.ignored_initial_contacts == []
+    assert left.certain == (left.q_witness is not None) and left.statistics["pairs"] > 0
+    assert repr(left).startswith("<ToleranceLeft: from ") and ": " + left.pair[0] in repr(left)
+    copy = pickle.loads(pickle.dumps(left))
+    assert repr(copy) == repr(left) and copy.lower == left.lower and copy.certain == left.certain
+    world.set_joint_tolerance(angle=0.01 * left.lower)
+    world.set_object_tolerance("ball", length=0.01 * left.lower)
+    assert world.check(q, q, check_self=False).free
+    far = world.tolerance_left(q, q, check_self=False, check_scene=False, most=7)
+    assert far.lower == 7 and far.pair is None and far.upper == np.inf
+    with pytest.raises(TypeError, match="accuracy_factor"):
+        world.tolerance_left(q, q, acuracy_factor=1)
+    with pytest.raises(ValueError, match="most"):
+        world.tolerance_left(q, q, most=0)

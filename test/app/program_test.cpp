@@ -112,6 +112,28 @@ TEST_F(ProgramTest, ClearanceOfAFreeMotion) {
   EXPECT_EQ(this->run("check --clearance-most 1 " + armAndBall() + " --from 0,0 --to 90deg,0").status, 2);
 }
 
+// The arm turns to 40 degrees; at 60 degrees less the ball's half width it touches.
+TEST_F(ProgramTest, ToleranceLeftOfAFreeMotion) {
+  const std::string motion = " --from 0,0 --to 40deg,0 --clearance ";
+  EXPECT_TRUE(Json::parse(this->run("check --json" + motion + armAndBall()).out).at("tolerance_left").is_null());
+  const std::string check = "check" + motion + armAndBall() + " --joint-tolerance 0.5deg ";
+  const Json left = Json::parse(this->run(check + "--json").out).at("tolerance_left");
+  const double touches = (M_PI / 3 - std::asin(0.15 / 0.6)) - 40 * M_PI / 180, tolerance = 0.5 * M_PI / 180;
+  EXPECT_GT(left.at("lower"), 1);
+  EXPECT_LE(left.at("lower"), touches / tolerance * (1 + 1e-9));
+  EXPECT_LE(left.at("upper"), touches / tolerance * 1.02);
+  EXPECT_EQ(left.at("within_accuracy"), true);
+  EXPECT_EQ(left.at("body1").at("name"), "arm");
+  EXPECT_EQ(left.at("body2").at("name"), "ball");
+  EXPECT_EQ(left.at("q_witness").is_null(), !left.at("certain").get<bool>());
+  const std::string text = this->run(check).out;
+  EXPECT_NE(text.find("left      tolerances times"), std::string::npos) << text;
+  EXPECT_NE(text.find("are still free; limited by link 'arm' and obstacle 'ball' at t = "), std::string::npos) << text;
+  const std::string hit =
+      this->run("check --clearance " + armAndBall() + " --from 0,0 --to 90deg,0 --joint-tolerance 1mm").out;
+  EXPECT_NE(hit.find("left      none: link 'arm' and obstacle 'ball' touch"), std::string::npos) << hit;
+}
+
 TEST_F(ProgramTest, ExhaustedBudgetIsThree) {
   const Outcome run = this->run("check " + armAndBall() + " --from 0,0 --to 90deg,0 --budget 1");
   EXPECT_EQ(run.status, 3) << run.out << run.err;

@@ -152,6 +152,22 @@ TEST(ToleranceLeft, AllTolerancesGrowTogether) {
   EXPECT_FALSE(lift.left().certain) << "the deviation of objects is not tried";
 }
 
+TEST(ToleranceLeft, OfAnAttachedObject) {
+  Lift lift;
+  const auto tool = ball(kRadius, Vector3d(3, 0, 0));
+  lift.manager->registerObject(tool.get(), "tool");
+  lift.manager->attach("lift", tool.get(), pose({0, 0, 0.05}));
+  lift.manager->setObjectTolerance("tool", {0.005, 0, Vector3d::Zero()});
+  const ToleranceLeft left = lift.left();
+  EXPECT_TRUE(holds(left, (Lift::kGap - 0.05) / 0.005));
+  EXPECT_EQ(std::minmax(left.body1.name, left.body2.name), std::minmax<std::string>("tool", "wall"));
+  // The same before a ball, which boxes tell apart from it first.
+  lift.manager->unregisterObject(lift.wall.get());
+  const auto post = ball(kRadius, Vector3d(0, 0, 1 + kRadius));
+  lift.manager->registerObject(post.get(), "post");
+  EXPECT_TRUE(holds(lift.left(), (Lift::kGap - 0.05) / 0.005));
+}
+
 TEST(ToleranceLeft, MarginsCount) {
   Lift lift;
   lift.manager->setJointTolerances({0, 0.01});
@@ -209,13 +225,14 @@ struct Stop {
     checked.disallow("base", "arm");
     manager->setAllowedCollisions(checked);
   }
-  /// Of a motion to 0.7: the tip's ball is 0.4 - 2 asin(0.01) rad from touching.
+  /// Of a motion from 0.35 to 0.7, so that with small tolerances it keeps within the limits: the tip's ball is 0.4 - 2
+  /// asin(0.01) rad from touching.
   void expect() {
     const double touch = 0.4 - 2 * std::asin(kRadius), gap = 2 * std::sin(0.2) - 2 * kRadius;
     for (const double tolerance : {0.01, 0.05, 0.6}) {
       manager->setJointTolerances({tolerance, 0});
       manager->setup();
-      const ToleranceLeft left = manager->toleranceLeft(JointMotion::linear(*tree, one(0), one(0.7)));
+      const ToleranceLeft left = manager->toleranceLeft(JointMotion::linear(*tree, one(0.35), one(0.7)));
       EXPECT_TRUE(left.within_accuracy) << tolerance;
       EXPECT_GE(left.lower * tolerance, 0.98 * gap / (1 + kRadius)) << tolerance;
       EXPECT_LE(left.lower * tolerance, touch * (1 + 1e-9)) << tolerance << ": said free, and touches";
@@ -250,7 +267,8 @@ TEST(ToleranceLeft, OfTwoLinksByTheirLargestStray) {
   checked.disallow("one", "two");
   manager.setAllowedCollisions(checked);
   const double gap = std::sqrt(0.5) - 0.2, touch = 0.5 * 3.14159265358979323846 - 2 * std::asin(0.1 / 0.5);
-  for (const double tolerance : {0.02, 2.5}) {
+  // (Of 20 rad, far beyond a full turn, a small part is free.)
+  for (const double tolerance : {0.02, 2.5, 20.0}) {
     manager.setJointTolerances({tolerance, 0});
     manager.setup();
     const ToleranceLeft left = manager.toleranceLeft(JointMotion::still(*tree, VectorXd::Zero(2)));
