@@ -45,6 +45,7 @@ struct ToleranceLeft {
   ///
   /// That is no proof that the robot can touch, unless the contact is `certain`. For the bound adds up the worst of all
   /// joints, though they may not get there together (doc/PROMISE.md, "Tolerances"). So more than `upper` may be free.
+  /// Within about a percent of its limit a query may miss a proof, though one with a larger factor has found it.
   double upper = std::numeric_limits<double>::infinity();
   /// With tolerances times `upper`, the time from which on the pair can't be proven apart; all is proven free before
   /// it. If `certain`, the time of the contact. In [0, 1], for a trajectory its own time; 0 if `upper` is infinite.

@@ -92,7 +92,7 @@ class BracketSearch {
     typename Context::Details details;
     Context context;
     context.details = &details;
-    if (!ask(queries_.beginning, request, context)) return;
+    (void)ask(queries_.beginning, request, context);  // those that are known are named, even if it has ended early
     for (const engine::Ignored& pair : details.ignored) left_out_.push_back(pair.pair);
     found_.ignored_initial_contacts = result_.ignored_initial_contacts;
   }
