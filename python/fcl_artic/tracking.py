@@ -106,8 +106,11 @@ def _pairs(header: Sequence[str], joints: Sequence[Joint], path: str) -> dict[st
 
 def _header_and_rows(path: str) -> tuple[list[str], list[tuple[int, list[str]]]]:
     """The header, and each row with the number of its line."""
-    with open(path, newline="", encoding="utf-8-sig") as file:
-        lines = [(number, line.strip()) for number, line in enumerate(file, 1) if line.strip()]
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            lines = [(number, line.strip()) for number, line in enumerate(file, 1) if line.strip()]
+    except UnicodeDecodeError as error:
+        raise ValueError(f"'{path}' is not a text in UTF-8: {error}") from None
     if not lines:
         raise ValueError(f"'{path}' is empty")
     first = lines[0][1].lstrip("# ")
@@ -115,8 +118,11 @@ def _header_and_rows(path: str) -> tuple[list[str], list[tuple[int, list[str]]]]
     lines[0] = (lines[0][0], first)
     rows = []
     table = csv.reader((line for _, line in lines), delimiter=separator, skipinitialspace=True)
-    for (number, _), cells in zip(lines, table):
-        rows.append((number, [cell.strip() for cell in cells]))
+    try:
+        for (number, _), cells in zip(lines, table):
+            rows.append((number, [cell.strip() for cell in cells]))
+    except csv.Error as error:
+        raise ValueError(f"'{path}' line {lines[len(rows)][0]} is no row of a CSV file: {error}") from None
     header = rows[0][1]
     twice = next((name for name in header if header.count(name) > 1), None)
     if twice is not None:
@@ -129,7 +135,7 @@ def _header_and_rows(path: str) -> tuple[list[str], list[tuple[int, list[str]]]]
 def _number(path: str, line: int, column: str, text: str) -> float:
     where = f"'{path}' line {line}, column '{column}'"
     try:
-        value = float(text)
+        value = float(text.replace("_", "?"))  # which Python reads over
     except ValueError:
         what = "is empty" if not text else f"is '{text}', no number"
         raise ValueError(f"{where} {what}: each row needs both values at one time") from None
@@ -190,6 +196,8 @@ def _rounded_up(value: float) -> str:
     """Three digits, never less than the value."""
     if value == 0:
         return "0"
+    if value < 1e-15:
+        return "1e-15"
     digits = 2 - math.floor(math.log10(value))
     up = math.ceil(value * 10.0**digits)
     text = f"{up / 10.0**digits:.{max(digits, 0)}f}"

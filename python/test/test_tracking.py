@@ -96,7 +96,7 @@ def test_endless_turns_count_by_their_angle(tree, log):
 
 
 def test_the_option_covers_the_largest_difference(tree, log):
-    for value in (0.00123456, 0.9995, 3.0, 0.1, 123.4, 1e-7, 0.001001):
+    for value in (0.00123456, 0.9995, 3.0, 0.1, 123.4, 1e-7, 0.001001, 1e-14):
         rows = [[0, value, 0, 0.5 * value, 0, 2 * value]]
         path = log(table("hinge_cmd,hinge,slide_cmd,slide,jaw_joint_cmd,jaw_joint", rows=rows))
         option = tracking.option(tracking.measure([path], tree), tree)
@@ -120,6 +120,11 @@ def test_bad_logs_are_refused_by_file_line_and_column(tree, log):
     path = log("hinge_cmd,hinge\n1,2\n\n1,\n")
     assert refusal([path], tree).startswith(f"'{path}' line 4, column 'hinge' is empty: each row needs both values")
     assert "line 2, column 'hinge_cmd' is '0,5', no number" in refusal([log("hinge_cmd;hinge\n0,5;1\n")], tree)
+    assert "line 2, column 'hinge' is '1_0', no number" in refusal([log("hinge_cmd,hinge\n1,1_0\n")], tree)
+    binary = log("")
+    binary.write_bytes(b"hinge_cmd,hinge\n\xff,1\n")
+    assert refusal([binary], tree).startswith(f"'{binary}' is not a text in UTF-8")
+    assert "line 2 is no row of a CSV file" in refusal([log("hinge_cmd,hinge\n" + "1" * 200000 + ",1\n")], tree)
     assert "line 2, column 'hinge' is nan" in refusal([log("hinge_cmd,hinge\n1,nan\n")], tree)
     none = refusal([log("time,hinge,slide\n0,1,2\n")], tree)
     assert "no joint has both a commanded and an actual column among time, hinge, slide: say which with --joint" in none
