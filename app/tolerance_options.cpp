@@ -2,6 +2,7 @@
 #include "tolerance_options.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
@@ -50,6 +51,21 @@ Quantity readQuantity(const std::string& where, const std::string& text) {
     if (unit == known.name) return {known.angle, value * known.size};
   }
   refuse(where, text, "has no unit: write deg or rad for an angle, m, cm or mm for a length");
+}
+
+/// @throws std::invalid_argument: a tolerance of all joints is an angle, and none turns, or a length, and none slides.
+void requireFitsSome(const ToleranceSettings::OfJoint& of, const KinematicTree& tree) {
+  const bool angle = of.angle.has_value();
+  for (JointId j = 0; j < tree.numJoints(); ++j) {
+    const JointType type = tree.joint(j).type;
+    const bool turns = type != JointType::fixed && type != JointType::prismatic;
+    const bool slides = type == JointType::prismatic || type == JointType::planar || type == JointType::floating;
+    if (!tree.joint(j).mimics && (angle ? turns : slides)) return;
+  }
+  const auto [kind, moves, cure] = angle ? std::array{"an angle", "turns", "a length, as 1mm"}
+                                         : std::array{"a length", "slides", "an angle, as 0.3deg"};
+  throw std::invalid_argument(fmt::format("{}: {} for all joints fits none, as no joint of robot '{}' {}: write {}",
+                                          of.where, kind, tree.name(), moves, cure));
 }
 
 ToleranceSettings::OfObject readPose(const std::string& where, const std::string& object, const std::string& text) {
@@ -152,6 +168,7 @@ void ToleranceSettings::apply(const Scene& scene, ArticulatedCollisionManager& m
   JointTolerance all;
   for (const OfJoint& of : joints) {
     if (!of.joint.empty()) continue;
+    requireFitsSome(of, manager.tree());
     all.angle = of.angle.value_or(all.angle);
     all.length = of.length.value_or(all.length);
   }

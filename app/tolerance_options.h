@@ -48,7 +48,8 @@ struct ToleranceSettings {
 
   bool any() const { return !joints.empty() || base || !objects.empty() || !speeds.empty(); }
   /// Sets them. The name of an object of several shapes stands for all of them.
-  /// @throws std::invalid_argument naming the option, as ArticulatedCollisionManager::setJointTolerance().
+  /// @throws std::invalid_argument naming the option, as ArticulatedCollisionManager::setJointTolerance(). Also for a
+  ///   tolerance of all joints that fits none: an angle where none turns, a length where none slides.
   void apply(const Scene& scene, ArticulatedCollisionManager& manager) const;
   /// The same text for the same settings: for hashes of what a run is about.
   std::string text() const;

@@ -56,13 +56,12 @@ std::string load() {
   return one_minute;
 }
 
-/// Processor, compiler and flags of a program's rows.
+}  // namespace
+
 std::string circumstances() {
   return fmt::format("{}; g++ {}; {}; FCL {}; load average {}", cpuField("model name"), __VERSION__, BENCH_FLAGS,
                      FCL_VERSION, load());
 }
-
-}  // namespace
 
 void addCounters(Row& row, const QueryStatistics& s) {
   std::vector<std::pair<const char*, std::uint64_t>> all = {{"pairs", s.pairs},

@@ -80,6 +80,9 @@ class Report {
   bool failed_ = false;
 };
 
+/// Processor, compiler, flags and load, in one line.
+std::string circumstances();
+
 /// "amd-epyc-zen4", or the CPU's model name in lower case with dashes.
 std::string machineName();
 

@@ -377,10 +377,10 @@ Definition steps_of (x : sstate) (e : selement) : list step :=
   | SRotate v => spin (Tvec (q v) (q (v + 1)%nat) (q (v + 2)%nat)) :: starts x v
   end.
 
-Lemma steps_of_ok s q x e M N sts : Rabs s <= 1 -> holds_state x s q -> element_map q e M -> holds_steps s sts N ->
+Lemma steps_of_ok s w q x e M M' N sts : Rabs s <= 1 -> holds_state x s q -> element_map w q e M M' -> holds_steps s sts N ->
   holds_steps s (steps_of x (selement_of e) ++ sts) (fun y => M (N y)).
 Proof.
-  intros Hs [Hq Hx] [a k v m c AM | a k v m c AM | v S HS] HN; cbn [selement_of steps_of].
+  intros Hs [Hq Hx] [a k v m c e' AM _ | a k v m c e' u AM _ _ | v S D HS _ R] HN; cbn [selement_of steps_of].
   - assert (H : holds (tm_add (tm_mul (tm_number m) (nth v (x_amount x) tm_zero)) (tm_number c)) s (real m * amount q v + real c))
       by (apply holds_add; [apply holds_mul; [exact Hs | apply holds_number | apply Hq] | apply holds_number]).
     pose proof (sincos_holds s _ _ Hs H) as SC. destruct (sincos _) as [sn cs]. cbn [fst snd] in SC. destruct SC as [S C].
@@ -398,10 +398,10 @@ Proof.
     apply steps_app; [apply Hx; exact HS | exact HN].
 Qed.
 
-Lemma all_steps_ok s q x es M : Rabs s <= 1 -> holds_state x s q -> elements_map q es M ->
+Lemma all_steps_ok s w q x es M M' : Rabs s <= 1 -> holds_state x s q -> elements_map w q es M M' ->
   holds_steps s (flat_map (steps_of x) (map selement_of es)) M.
 Proof.
-  intros Hs Hq H. induction H as [|e es E M HE HM IH]; cbn [map flat_map].
+  intros Hs Hq H. induction H as [|e es E E' M M' HE HM IH]; cbn [map flat_map].
   - apply no_step. reflexivity.
   - eapply steps_of_ok; eassumption.
 Qed.
@@ -415,14 +415,14 @@ Definition tree_of (fs : list sframe) (x : sstate) : tree :=
   map (fun f => (sparent f, sorigin f :: flat_map (steps_of x) (selements f))) fs.
 Definition tree_at (fs : list sframe) (p : spiece) (a b : Z) : tree := tree_of fs (state_at p (time_tm a b)).
 
-Lemma tree_ok w p tmodel t s P : Rabs s <= 1 -> holds tmodel s t -> frames_at w (at_time p t) P ->
+Lemma tree_ok w p tmodel t s P P' : Rabs s <= 1 -> holds tmodel s t -> frames_at w (at_time p t) P P' ->
   forall i k sts, nth_error (tree_of (map sframe_of (frames w)) (state_at (spiece_of p) tmodel)) i = Some (k, sts) ->
   exists E, holds_steps s sts E /\ forall x, P (S i) x = P k (E x).
 Proof.
-  intros Hs Ht [_ F] i k sts. unfold tree_of. rewrite map_map.
+  intros Hs Ht (_ & _ & F) i k sts. unfold tree_of. rewrite map_map.
   rewrite nth_error_map. destruct (nth_error (frames w) i) as [f|] eqn:N; [|discriminate]. cbn.
-  intros [= <- <-]. destruct (F i f N) as (O & M & HO & HM & X). exists (fun x => O (M x)). split.
+  intros [= <- <-]. destruct (F i f N) as (O & G & M & M' & HO & _ & HM & X & _). exists (fun x => O (M x)). split.
   - apply first_step with (E := O) (M := M); [apply placed_ok; exact HO | | reflexivity].
-    apply all_steps_ok with (at_time p t); [exact Hs | apply state_ok; assumption | exact HM].
+    apply all_steps_ok with w (at_time p t) M'; [exact Hs | apply state_ok; assumption | exact HM].
   - exact X.
 Qed.

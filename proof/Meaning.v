@@ -3,8 +3,8 @@
 
     Nine numbers mean any rotation near them, and three numbers a unit vector: here the checker makes sure that there is
     one. A rotation is found by a quaternion of integers, whose matrix is compared exactly. *)
-From Coq Require Import Reals ZArith Lia Lra Bool List.
-From FclArtic Require Import Statement Numbers Enclose.
+From Coq Require Import Reals ZArith Lia Lra Bool List FunctionalExtensionality.
+From FclArtic Require Import Statement Numbers Frames Enclose Reach Tube.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -58,7 +58,47 @@ Definition nothing : numbers3 := let zero := Number 0 0 in Numbers3 zero zero ze
 Definition piece_means (p : piece) : bool :=
   forallb (fun o => let '(a, b, c) := snd o in has_rotation (Stated a b c nothing)) (orientations p).
 
+(** A tolerance below 0 would leave nothing within it. *)
+Definition not_below_0 (x : number) : bool := Z.leb 0 (mantissa x).
+Definition all_not_below_0 (list : list (nat * number)) : bool := forallb (fun e => not_below_0 (snd e)) list.
+Definition pose_tolerance_means (t : pose_tolerance) : bool := not_below_0 (most_shift t) && not_below_0 (most_angle t).
+Definition tolerances_mean (t : tolerances) : bool :=
+  all_not_below_0 (of_variables t) && all_not_below_0 (of_vectors t) && all_not_below_0 (of_rotations t) &&
+  forallb (fun e => pose_tolerance_means (snd e)) (of_frames t) && forallb (fun e => pose_tolerance_means (snd e)) (of_bodies t).
+
 (** ** Proofs *)
+
+Lemma not_below_0_ok x : not_below_0 x = true -> 0 <= real x.
+Proof.
+  intros H. apply Z.leb_le, IZR_le in H. unfold real. apply Rmult_le_pos; [exact H | left; apply powerRZ_lt; lra].
+Qed.
+
+Lemma most_not_below_0 list i : all_not_below_0 list = true -> 0 <= most list i.
+Proof.
+  unfold all_not_below_0, most. rewrite forallb_forall. intros H. destruct (find _ list) as [e|] eqn:F; [|lra].
+  apply not_below_0_ok, H. exact (proj1 (find_some _ _ F)).
+Qed.
+
+Lemma no_turn most : 0 <= most -> small_turn most (fun x => x).
+Proof.
+  intros H. exists (Vec 1 0 0), 0. split; [unfold dot; cbn [vx vy vz]; ring|].
+  split; [rewrite Rabs_R0; exact H | intros x; rewrite turn_zero; reflexivity].
+Qed.
+
+Lemma not_off t : (forall x, t = Some x -> pose_tolerance_means x = true) -> pose_off t (fun x => x).
+Proof.
+  destruct t as [t|]; cbn [pose_off]; [|reflexivity]. intros H. specialize (H t eq_refl).
+  apply andb_true_iff in H. destruct H as [H1 H2]. apply not_below_0_ok in H1, H2.
+  exists (fun x => x), (Vec 0 0 0). split; [apply no_turn; exact H2|]. split; [rewrite norm_zero; exact H1|].
+  intros x. destruct x. coords. f_equal; ring.
+Qed.
+
+Lemma tolerance_found {T} (f : T * pose_tolerance -> bool) list t : forallb (fun e => pose_tolerance_means (snd e)) list = true ->
+  option_map snd (find f list) = Some t -> pose_tolerance_means t = true.
+Proof.
+  rewrite forallb_forall. intros H. destruct (find f list) as [e|] eqn:F; [|discriminate]. cbn [option_map].
+  intros [= <-]. apply H. exact (proj1 (find_some _ _ F)).
+Qed.
 
 Lemma is_near_ok n e x : (0 < n)%Z -> is_near n e x = true -> Rabs (IZR e / IZR n - real x) <= / 2 ^ 49.
 Proof.
@@ -141,39 +181,44 @@ Proof.
     split; [exact R | reflexivity].
 Qed.
 
-Lemma frame_means_ok f q : starts_exist q -> frame_means f = true -> exists O M, pose_map (origin f) O /\ elements_map q (elements f) M.
+Lemma frame_means_ok w f q : tolerances_mean (off w) = true -> starts_exist q -> frame_means f = true ->
+  exists O M, pose_map (origin f) O /\ elements_map w q (elements f) M M.
 Proof.
-  intros HS. unfold frame_means. rewrite andb_true_iff. intros [H1 H2]. destruct (has_rotation_ok _ H1) as [O HO].
+  unfold tolerances_mean. rewrite !andb_true_iff. intros [[[[T1 T2] T3] _] _] HS.
+  unfold frame_means. rewrite andb_true_iff. intros [H1 H2]. destruct (has_rotation_ok _ H1) as [O HO].
   exists O. induction (elements f) as [|e es IH].
   - exists (fun x => x). split; [exact HO | constructor].
   - cbn [forallb] in H2. apply andb_true_iff in H2. destruct H2 as [He Hes].
-    destruct (IH Hes) as (M & _ & HM). destruct e as [a v m c | a v m c | v]; cbn [element_means] in He.
-    + destruct (has_direction_ok a He) as [k Hk].
-      exists (fun x => turn k (real m * amount q v + real c) (M x)). split; [exact HO|].
-      apply first_element with (E := turn k (real m * amount q v + real c)); [apply turn_map; exact Hk | exact HM].
-    + destruct (has_direction_ok a He) as [k Hk].
-      exists (fun x => add (M x) (scale (real m * amount q v + real c) k)). split; [exact HO|].
-      apply (first_element q (Slide a v m c) es (fun x => add x (scale (real m * amount q v + real c) k)) M);
-        [apply slide_map; exact Hk | exact HM].
-    + destruct (HS v) as [S Sv].
-      exists (fun x => rotate (Vec (amount q v) (amount q (v + 1)) (amount q (v + 2))) (S (M x))). split; [exact HO|].
-      apply (first_element q (Rotate v) es
-        (fun x => rotate (Vec (amount q v) (amount q (v + 1)) (amount q (v + 2))) (S x)) M);
-        [apply rotate_map; exact Sv | exact HM].
+    destruct (IH Hes) as (M & _ & HM).
+    assert (E : exists E, element_map w q e E E).
+    { destruct e as [a v m c | a v m c | v]; cbn [element_means] in He.
+      - destruct (has_direction_ok a He) as [k Hk]. pose proof (most_not_below_0 _ v T1) as T.
+        exists (turn k (real m * amount q v + real c)).
+        pose proof (turn_map w q a k v m c 0 Hk ltac:(rewrite Rabs_R0; exact T)) as K. rewrite Rplus_0_r in K. exact K.
+      - destruct (has_direction_ok a He) as [k Hk]. pose proof (most_not_below_0 _ v T1) as T. pose proof (most_not_below_0 _ v T2) as L.
+        exists (fun x => add x (scale (real m * amount q v + real c) k)).
+        pose proof (slide_map w q a k v m c 0 (Vec 0 0 0) Hk ltac:(rewrite Rabs_R0; exact T)
+          ltac:(rewrite norm_zero; apply Rmult_le_pos; [apply Rabs_pos | exact L])) as K. rewrite Rplus_0_r in K.
+        eapply eq_ind; [exact K|]. extensionality x. destruct x, k. coords. f_equal; ring.
+      - destruct (HS v) as [S Sv]. pose proof (most_not_below_0 _ v T3) as T.
+        exists (fun x => rotate (Vec (amount q v) (amount q (v + 1)) (amount q (v + 2))) (S x)).
+        exact (rotate_map w q v S (fun x => x) Sv (no_turn _ T)). }
+    destruct E as [E HE]. exists (fun x => E (M x)). split; [exact HO | apply first_element; assumption].
 Qed.
 
 (** Frames are placed one after the other: each stands in one that has its place already. *)
-Lemma frames_exist w q : starts_exist q -> (forall i f, nth_error (frames w) i = Some f -> (parent f <= i)%nat) ->
-  forallb frame_means (frames w) = true -> exists P, frames_at w q P.
+Lemma frames_exist w q : tolerances_mean (off w) = true -> starts_exist q ->
+  (forall i f, nth_error (frames w) i = Some f -> (parent f <= i)%nat) ->
+  forallb frame_means (frames w) = true -> exists P, frames_at w q P P.
 Proof.
-  intros HS WF H. rewrite forallb_forall in H.
+  intros HT HS WF H. rewrite forallb_forall in H.
   assert (K : forall n, exists P : nat -> vec -> vec, (forall x, P O x = x) /\
     forall i f, (i < n)%nat -> nth_error (frames w) i = Some f ->
-      exists O M, pose_map (origin f) O /\ elements_map q (elements f) M /\ forall x, P (S i) x = P (parent f) (O (M x))).
+      exists O M, pose_map (origin f) O /\ elements_map w q (elements f) M M /\ forall x, P (S i) x = P (parent f) (O (M x))).
   { induction n as [|n (P & P0 & PS)].
     - exists (fun _ x => x). split; [reflexivity | intros; lia].
     - destruct (nth_error (frames w) n) as [f|] eqn:N.
-      + destruct (frame_means_ok f q HS (H f (nth_error_In _ _ N))) as (O & M & HO & HM).
+      + destruct (frame_means_ok w f q HT HS (H f (nth_error_In _ _ N))) as (O & M & HO & HM).
         exists (fun j x => if Nat.eqb j (S n) then P (parent f) (O (M x)) else P j x). split; [exact P0|].
         intros i g Hi Ng. pose proof (WF i g Ng) as Wg.
         destruct (Nat.eq_dec i n) as [->|D].
@@ -184,6 +229,8 @@ Proof.
           destruct (Nat.eqb_spec (S i) (S n)); [lia|]. destruct (Nat.eqb_spec (parent g) (S n)); [lia|]. apply X.
       + exists P. split; [exact P0|]. intros i f Hi Nf. apply PS; [|exact Nf].
         assert (i <> n) by (intros ->; congruence). lia. }
-  destruct (K (length (frames w))) as (P & P0 & PS). exists P. split; [exact P0|]. intros i f N.
-  apply PS; [|exact N]. apply nth_error_Some. congruence.
+  destruct (K (length (frames w))) as (P & P0 & PS). exists P. split; [exact P0|]. split; [exact P0|]. intros i f N.
+  destruct (PS i f ltac:(apply nth_error_Some; congruence) N) as (O & M & HO & HM & X).
+  exists O, (fun x => x), M, M. split; [exact HO|]. split; [|auto].
+  apply not_off. intros t. apply tolerance_found. unfold tolerances_mean in HT. rewrite !andb_true_iff in HT. apply HT.
 Qed.

@@ -73,12 +73,24 @@ Record body := Body {
 Inductive reason := still | neighbours | allowed | touch_link.
 Record unchecked_pair := Unchecked { why : reason; one_name : string; other_name : string }.
 
+(** How far a pose may be off: turned by an angle about a point, then shifted by a length. *)
+Record pose_tolerance := Tolerance { most_shift : number; most_angle : number; pivot : numbers3 }.
+
+(** How far the real world may be off, by numbers of variables and frames and by names of bodies. *)
+Record tolerances := Tolerances {
+  of_variables : list (nat * number);                     (* each turn and slide by one *)
+  of_vectors : list (nat * number);                       (* the slide by one, in any direction *)
+  of_rotations : list (nat * number);                     (* each `Rotate` of one *)
+  of_frames : list (nat * pose_tolerance);
+  of_bodies : list (string * pose_tolerance) }.
+
 Record world := World {
   frames : list frame;
   bodies : list body;
   margins : list (string * number);
   pair_margins : list (string * string * number);
-  unchecked : list unchecked_pair }.
+  unchecked : list unchecked_pair;
+  off : tolerances }.
 
 (** A piece has a polynomial for each variable, by its coefficients of 1, t, t^2, ...; the nine numbers of rotations with
     which `Rotate` of a variable begins; and pairs of bodies, the lower number first, that are ignored up to a time. *)
@@ -132,30 +144,59 @@ Definition coordinate_axis (a : vec) :=
 Definition axis_means (a k : vec) :=
   dot k k = 1 /\ near (/ 2 ^ 50) k (scale (/ norm a) a) /\ (coordinate_axis a -> k = scale (/ norm a) a).
 
-(** The maps (of points of the element's own frame) that an element may mean in the state q. *)
-Inductive element_map (q : state) : element -> (vec -> vec) -> Prop :=
-  | turn_map a k v m c : axis_means (point a) k ->
-      element_map q (Turn a v m c) (turn k (real m * amount q v + real c))
-  | slide_map a k v m c : axis_means (point a) k ->
-      element_map q (Slide a v m c) (fun x => add x (scale (real m * amount q v + real c) k))
-  | rotate_map v S : start_map (start q v) S ->
-      element_map q (Rotate v) (fun x => rotate (Vec (amount q v) (amount q (v + 1)) (amount q (v + 2))) (S x)).
+(** *** Tolerances
 
-Inductive elements_map (q : state) : list element -> (vec -> vec) -> Prop :=
-  | no_element : elements_map q [] (fun x => x)
-  | first_element e es E M : element_map q e E -> elements_map q es M ->
-      elements_map q (e :: es) (fun x => E (M x)).
+    What no tolerance is stated of is not off at all. *)
+Definition most (list : list (nat * number)) (i : nat) : R :=
+  match find (fun e => Nat.eqb (fst e) i) list with Some e => real (snd e) | None => 0 end.
+Definition frame_tolerance (w : world) (i : nat) : option pose_tolerance :=
+  option_map snd (find (fun e => Nat.eqb (fst e) i) (of_frames (off w))).
+Definition body_tolerance (w : world) (b : body) : option pose_tolerance :=
+  option_map snd (find (fun e => String.eqb (fst e) (body_name b)) (of_bodies (off w))).
+
+(** A turn about some axis through the origin, by no more than [most]. *)
+Definition small_turn (most : R) (D : vec -> vec) : Prop :=
+  exists k angle, dot k k = 1 /\ Rabs angle <= most /\ forall x, D x = turn k angle x.
+
+(** How a pose may be off: G takes the points from where they are to where they may be. *)
+Definition pose_off (tolerance : option pose_tolerance) (G : vec -> vec) : Prop :=
+  match tolerance with
+  | None => forall x, G x = x
+  | Some t => exists D u, small_turn (real (most_angle t)) D /\ norm u <= real (most_shift t) /\
+      forall x, G x = add (add (point (pivot t)) (D (sub x (point (pivot t))))) u
+  end.
+
+(** [element_map w q e E E']: in the state q, E is a map (of points of the element's own frame) that the element may mean,
+    and E' is where it may be instead. A turn is about the same axis, by an angle that may be another one; a slide may
+    be longer or shorter, and may stray in a direction of its own; a rotation is followed by a small turn. Each element
+    is off by itself, also where several have one variable. *)
+Inductive element_map (w : world) (q : state) : element -> (vec -> vec) -> (vec -> vec) -> Prop :=
+  | turn_map a k v m c e : axis_means (point a) k -> Rabs e <= most (of_variables (off w)) v ->
+      element_map w q (Turn a v m c) (turn k (real m * amount q v + real c)) (turn k (real m * (amount q v + e) + real c))
+  | slide_map a k v m c e u : axis_means (point a) k -> Rabs e <= most (of_variables (off w)) v ->
+      norm u <= Rabs (real m) * most (of_vectors (off w)) v ->
+      element_map w q (Slide a v m c) (fun x => add x (scale (real m * amount q v + real c) k))
+        (fun x => add (add x (scale (real m * (amount q v + e) + real c) k)) u)
+  | rotate_map v S D : start_map (start q v) S -> small_turn (most (of_rotations (off w)) v) D ->
+      let R x := rotate (Vec (amount q v) (amount q (v + 1)) (amount q (v + 2))) (S x) in
+      element_map w q (Rotate v) R (fun x => D (R x)).
+
+Inductive elements_map (w : world) (q : state) : list element -> (vec -> vec) -> (vec -> vec) -> Prop :=
+  | no_element : elements_map w q [] (fun x => x) (fun x => x)
+  | first_element e es E E' M M' : element_map w q e E E' -> elements_map w q es M M' ->
+      elements_map w q (e :: es) (fun x => E (M x)) (fun x => E' (M' x)).
 
 (** The maps that twelve numbers may mean: a rotation, and exactly the translation. *)
 Inductive pose_map (p : stated_pose) : (vec -> vec) -> Prop :=
   | pose_means m : rotation_means (r1 p) (r2 p) (r3 p) m -> pose_map p (fun x => add (apply m x) (point (shift p))).
 
-(** [P i x] is where the point x of frame i stands in the world. *)
-Definition frames_at (w : world) (q : state) (P : nat -> vec -> vec) : Prop :=
-  (forall x, P O x = x) /\
+(** [P i x] is where the motion has the point x of frame i in the world, [P' i x] where it may be instead. Rotations and
+    axes are the same for both. *)
+Definition frames_at (w : world) (q : state) (P P' : nat -> vec -> vec) : Prop :=
+  (forall x, P O x = x) /\ (forall x, P' O x = x) /\
   (forall i f, nth_error (frames w) i = Some f ->
-     exists O M, pose_map (origin f) O /\ elements_map q (elements f) M /\
-       forall x, P (S i) x = P (parent f) (O (M x))).
+     exists O G M M', pose_map (origin f) O /\ pose_off (frame_tolerance w (S i)) G /\ elements_map w q (elements f) M M' /\
+       (forall x, P (S i) x = P (parent f) (O (M x))) /\ forall x, P' (S i) x = P' (parent f) (O (G (M' x)))).
 
 (** ** Geometry *)
 
@@ -185,7 +226,7 @@ Definition inside (g : geometry) (x : vec) : Prop :=
   | Plane n d => dot (point n) x = real d
   end.
 
-(** y is where a point of body b stands in the world. *)
+(** y is where a point of body b stands in the world: B takes points of its geometry to its frame. *)
 Definition occupies (P : nat -> vec -> vec) (b : body) (B : vec -> vec) (y : vec) :=
   exists x, inside (body_geometry b) x /\ y = P (body_frame b) (B x).
 
@@ -268,15 +309,17 @@ Definition reason_holds (w : world) (why : reason) (a b : body) : Prop :=
 
 (** ** The claim *)
 
-(** The claim is about something: at every time frames and bodies can stand as the world says. *)
+(** The claim is about something: at every time frames and bodies can stand as the world says, and need not be off. *)
 Definition meaningful (w : world) (m : motion) :=
-  (forall p t, In p (pieces m) -> exists P, frames_at w (at_time p t) P) /\
-  (forall b, In b (bodies w) -> exists B, pose_map (body_place b) B).
+  (forall p t, In p (pieces m) -> exists P, frames_at w (at_time p t) P P) /\
+  (forall b, In b (bodies w) -> exists B, pose_map (body_place b) B /\ pose_off (body_tolerance w b) (fun x => x)).
 
-(** In the state q, whatever the rotations and axes mean, the points of a and b keep their distance. *)
+(** In the state q, whatever the rotations and axes mean, and however frames and bodies are off within their tolerances,
+    the points of a and b keep their distance. *)
 Definition apart (w : world) (m : motion) (q : state) (a b : body) : Prop :=
-  forall P A B, frames_at w q P -> pose_map (body_place a) A -> pose_map (body_place b) B ->
-  forall x y, occupies P a A x -> occupies P b B y -> norm (sub x y) > margin w m a b.
+  forall P P' A B F G, frames_at w q P P' -> pose_map (body_place a) A -> pose_map (body_place b) B ->
+  pose_off (body_tolerance w a) F -> pose_off (body_tolerance w b) G ->
+  forall x y, occupies P' a (fun p => A (F p)) x -> occupies P' b (fun p => B (G p)) y -> norm (sub x y) > margin w m a b.
 
 (** When a piece's part of the claim ends: the last one at [until], the others at 1. *)
 Definition ends (m : motion) (k : nat) : R :=
@@ -285,26 +328,26 @@ Definition ends (m : motion) (k : nat) : R :=
 (** A piece begins where the one before ends: each turn and slide differs by 2^-29 and 2^-39 of it (2^-20 at most). The
     rotation of a frame with `Rotate` differs by 2^-27 in each entry; these are the ways of the frame's coordinate axes. *)
 Definition way (M : vec -> vec) (axis : vec) := sub (M axis) (M (Vec 0 0 0)).
-Definition element_joined (p p' : piece) (f : frame) (e : element) : Prop :=
+Definition element_joined (w : world) (p p' : piece) (f : frame) (e : element) : Prop :=
   match e with
   | Turn _ v m _ | Slide _ v m _ =>
       let x := real m * value p 1 v in
       Rabs (x - real m * value p' 0 v) <= / 2 ^ 29 + Rmin (Rabs x / 2 ^ 39) (/ 2 ^ 20)
   | Rotate _ =>
-      forall O M M', pose_map (origin f) O -> elements_map (at_time p 1) (elements f) M ->
-      elements_map (at_time p' 0) (elements f) M' ->
+      forall O M M' N N', pose_map (origin f) O -> elements_map w (at_time p 1) (elements f) M N ->
+      elements_map w (at_time p' 0) (elements f) M' N' ->
       forall axis, In axis [Vec 1 0 0; Vec 0 1 0; Vec 0 0 1] ->
       near (/ 2 ^ 27) (way (fun x => O (M x)) axis) (way (fun x => O (M' x)) axis)
   end.
 Definition joined (w : world) (p p' : piece) : Prop :=
-  forall f e, In f (frames w) -> In e (elements f) -> element_joined p p' f e.
+  forall f e, In f (frames w) -> In e (elements f) -> element_joined w p p' f e.
 
-(** Bodies i and j are checked at time t of piece k, and have a point in common there, wherever rotations and axes let
-    the frames stand; or, if only [near], points that are no farther from each other than the margin. *)
+(** Bodies i and j are checked at time t of piece k, and have a point in common there on the motion itself, wherever
+    rotations and axes let the frames stand; or, if only [near], points that are no farther from each other than the margin. *)
 Definition meets (w : world) (m : motion) (near : bool) (k i j : nat) (t : number) : Prop :=
   exists p a b, nth_error (pieces m) k = Some p /\ nth_error (bodies w) i = Some a /\ nth_error (bodies w) j = Some b /\
   (i < j)%nat /\ checked w m a b = true /\ 0 <= real t <= 1 /\ (forall u, In (i, j, u) (ignored p) -> real u < real t) /\
-  forall P A B, frames_at w (at_time p (real t)) P -> pose_map (body_place a) A -> pose_map (body_place b) B ->
+  forall P P' A B, frames_at w (at_time p (real t)) P P' -> pose_map (body_place a) A -> pose_map (body_place b) B ->
   exists x y, occupies P a A x /\ occupies P b B y /\ if near then norm (sub x y) <= margin w m a b else x = y.
 
 (** Each pair that is listed as unchecked has the reason that is given. *)

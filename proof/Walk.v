@@ -4,7 +4,7 @@
     As verify/proof.cpp: a node is about a task, that is pieces of a body A, a list of partners and an interval of time;
     TIME, PARTNERS, OWN and OTHER cut their task in two parts that cover it. *)
 From Coq Require Import Reals ZArith Lia Lra String Bool List.
-From FclArtic Require Import Statement Numbers Trig Frames Enclose Meaning Reasons Leaf Witness.
+From FclArtic Require Import Statement Numbers Trig Frames Enclose Meaning Reasons Reach Tube Leaf Witness.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -38,14 +38,15 @@ Definition cuts (count size : nat) : bool := Nat.ltb 0 count && Nat.ltb count si
 Section Check.
 Variable sfs : list sframe.
 Variable q : spiece.
+Variable pl : plays.
 Variable A : sbody.
 
 (** Partners that are ignored up to a time take part from then on. *)
 Definition leaf (n : line) (os : forest) (ps : list partner) (a b : Z) (ts : poses) : bool :=
   Nat.leb (l_frame n) (length sfs) &&
-  separated leaf_halvings sfs q A os n (filter (fun p => Z.leb (p_from p) a) ps) a b ts &&
+  separated leaf_halvings sfs q pl A os n (filter (fun p => Z.leb (p_from p) a) ps) a b ts &&
   forallb (fun p => Z.leb (p_from p) a || Z.leb b (p_from p) ||
-                    separated leaf_halvings sfs q A os n [p] (p_from p) b (poses_from 0 sfs q (p_from p) b)) ps.
+                    separated leaf_halvings sfs q pl A os n [p] (p_from p) b (poses_from 0 sfs q (p_from p) b)) ps.
 
 Fixpoint check (nd : node) (os : forest) (ps : list partner) (a b : Z) (ts : poses) : bool :=
   match nd with
@@ -76,10 +77,10 @@ End Check.
 (** ** Bodies, pairs, pieces of the motion *)
 
 Record prepared := Prepared { pr_number : nat; pr_body : body; pr_sbody : sbody; pr_pieces : forest }.
-Definition prepare (i : nat) (b : body) : prepared :=
-  Prepared i b (Sbody (body_frame b) (placed (body_place b))) (forest_of (outlines (body_geometry b))).
-Fixpoint prepare_all (i : nat) (bs : list body) : list prepared :=
-  match bs with [] => [] | b :: rest => prepare i b :: prepare_all (S i) rest end.
+Definition prepare (w : world) (i : nat) (b : body) : prepared :=
+  Prepared i b (Sbody (body_frame b) (placed (body_place b)) (body_give w b)) (forest_of (outlines (body_geometry b))).
+Fixpoint prepare_all (w : world) (i : nat) (bs : list body) : list prepared :=
+  match bs with [] => [] | b :: rest => prepare w i b :: prepare_all w (S i) rest end.
 
 (** Until when a pair is ignored; before all times, if it is not. *)
 Definition ignored_until (p : piece) (i j : nat) : Z :=
@@ -93,19 +94,19 @@ Definition partner_of (w : world) (m : motion) (p : piece) (b a : prepared) : pa
     (ignored_until p (pr_number a) (pr_number b)).
 
 (** One root for each body that has partners before it; the nodes that are left over. *)
-Fixpoint check_bodies (w : world) (m : motion) (sfs : list sframe) (p : piece) (until_up : Z)
+Fixpoint check_bodies (w : world) (m : motion) (sfs : list sframe) (p : piece) (pl : plays) (until_up : Z)
     (ts : poses) (before rest : list prepared) (nodes : list node) : option (list node) :=
   match rest with
   | [] => Some nodes
   | b :: rest' =>
       match filter (fun a => checked w m (pr_body a) (pr_body b)) before with
-      | [] => check_bodies w m sfs p until_up ts (before ++ [b]) rest' nodes
+      | [] => check_bodies w m sfs p pl until_up ts (before ++ [b]) rest' nodes
       | partners =>
           match nodes with
           | [] => None
           | nd :: nodes' =>
-              if check sfs (spiece_of p) (pr_sbody b) nd (pr_pieces b) (map (partner_of w m p b) partners) 0 until_up ts
-              then check_bodies w m sfs p until_up ts (before ++ [b]) rest' nodes'
+              if check sfs (spiece_of p) pl (pr_sbody b) nd (pr_pieces b) (map (partner_of w m p b) partners) 0 until_up ts
+              then check_bodies w m sfs p pl until_up ts (before ++ [b]) rest' nodes'
               else None
           end
       end
@@ -118,7 +119,7 @@ Fixpoint check_pieces (w : world) (m : motion) (sfs : list sframe) (bs : list pr
   | p :: rest =>
       let until_up := match rest with [] => number_up (until m) | _ => one end in
       let ts := poses_from (kept_depth sfs) sfs (spiece_of p) 0 until_up in
-      match check_bodies w m sfs p until_up ts [] bs nodes with
+      match check_bodies w m sfs p (plays_of w (spiece_of p)) until_up ts [] bs nodes with
       | Some nodes' => check_pieces w m sfs bs rest nodes'
       | None => None
       end
@@ -152,10 +153,10 @@ Definition is_well_formed (w : world) : bool :=
   parents_ok 0 (frames w) && forallb (fun b => Nat.leb (body_frame b) (length (frames w))) (bodies w).
 
 Definition is_meaningful (w : world) (m : motion) : bool :=
-  forallb frame_means (frames w) && forallb piece_means (pieces m) && forallb (fun b => has_rotation (body_place b)) (bodies w).
+  tolerances_mean (off w) && forallb frame_means (frames w) && forallb piece_means (pieces m) && forallb (fun b => has_rotation (body_place b)) (bodies w).
 
 (** The program prepares a world once, for all records about it. *)
-Definition prepare_world (w : world) : list prepared := prepare_all 0 (bodies w).
+Definition prepare_world (w : world) : list prepared := prepare_all w 0 (bodies w).
 Definition accepts_prepared (bs : list prepared) (w : world) (m : motion) (nodes : list node) : bool :=
   is_well_formed w && is_meaningful w m && reasons_ok w && pieces_join w (pieces m) &&
   match check_pieces w m (map sframe_of (frames w)) bs (pieces m) nodes with
@@ -172,23 +173,23 @@ Hypothesis WF : well_formed w.
 Variable m : motion.
 Let sfs := map sframe_of (frames w).
 
-Lemma leaf_ok pc A n os ps a b ts : leaf sfs (spiece_of pc) A n os ps a b ts = true ->
-  (exists d, ts = poses_from d sfs (spiece_of pc) a b) -> forall t P p, line_ok n A os p -> V a <= t <= V b -> frames_at w (at_time pc t) P -> In p ps -> V (p_from p) < t ->
-  keeps P A os p.
+Lemma leaf_ok pc A n os ps a b ts : leaf sfs (spiece_of pc) (plays_of w (spiece_of pc)) A n os ps a b ts = true ->
+  (exists d, ts = poses_from d sfs (spiece_of pc) a b) -> forall t P P' p, line_ok n A os p -> V a <= t <= V b ->
+  frames_at w (at_time pc t) P P' -> In p ps -> V (p_from p) < t -> keeps P' A os p.
 Proof.
-  unfold leaf. rewrite !andb_true_iff. intros [[L S1] S2] [d ->] t P p LO Ht HP Ip Hp. apply Nat.leb_le in L.
+  unfold leaf. rewrite !andb_true_iff. intros [[L S1] S2] [d ->] t P P' p LO Ht HP Ip Hp. apply Nat.leb_le in L.
   unfold sfs in L. rewrite map_length in L. rewrite forallb_forall in S2. specialize (S2 p Ip).
   rewrite !orb_true_iff in S2. destruct S2 as [[E|E]|E]; [| apply Z.leb_le, V_le in E; lra |].
   - eapply separated_ok; [exact WF | exact L | exact S1 | exact LO | exact Ht | exact HP|]. apply filter_In. split; assumption.
   - eapply separated_ok; [exact WF | exact L | exact E | exact LO | | exact HP | left; reflexivity]. lra.
 Qed.
 
-Lemma check_ok pc A nd : forall os ps a b ts, check sfs (spiece_of pc) A nd os ps a b ts = true ->
+Lemma check_ok pc A nd : forall os ps a b ts, check sfs (spiece_of pc) (plays_of w (spiece_of pc)) A nd os ps a b ts = true ->
   (exists d, ts = poses_from d sfs (spiece_of pc) a b) ->
-  forall t P p, V a <= t <= V b -> frames_at w (at_time pc t) P -> In p ps -> V (p_from p) < t -> keeps P A os p.
+  forall t P P' p, V a <= t <= V b -> frames_at w (at_time pc t) P P' -> In p ps -> V (p_from p) < t -> keeps P' A os p.
 Proof.
   induction nd as [wh x y z | turned | l IHl r IHr | k l IHl r IHr | k l IHl r IHr | k l IHl r IHr];
-    intros os ps a b ts H TS t P p Ht HP Ip Hp; cbn [check] in H.
+    intros os ps a b ts H TS t P P' p Ht HP Ip Hp; cbn [check] in H.
   - eapply leaf_ok; [exact H | exact TS | apply along_ok | exact Ht | exact HP | exact Ip | exact Hp].
   - destruct ps as [|p' [|]]; try discriminate. destruct Ip as [->|[]].
     destruct (wall_line A os p turned) as [n|] eqn:W; [|discriminate].
@@ -201,13 +202,13 @@ Proof.
   - rewrite !andb_true_iff in H. destruct H as [_ [H1 H2]]. rewrite <- (firstn_skipn k ps) in Ip. apply in_app_or in Ip.
     destruct Ip as [I|I]; [eapply IHl | eapply IHr]; eassumption.
   - destruct (split k os) as [[x y]|] eqn:E; [|discriminate]. apply andb_true_iff in H. destruct H as [H1 H2].
-    intros F G HF HG x' y' o o' Io Co Io' Co'.
+    intros F F' G G' HF HG x' y' o o' Io Co Io' Co'.
     destruct (split_has _ _ _ _ _ E Io) as [I|I]; [eapply IHl | eapply IHr]; eassumption.
   - destruct ps as [|p' [|]]; try discriminate. destruct Ip as [->|[]].
     destruct (split k (p_pieces p)) as [[x y]|] eqn:E; [|discriminate]. apply andb_true_iff in H. destruct H as [H1 H2].
-    intros F G HF HG x' y' o o' Io Co Io' Co'. destruct (split_has _ _ _ _ _ E Io') as [I|I].
-    + exact (IHl _ _ _ _ _ H1 TS t P _ Ht HP (or_introl eq_refl) Hp F G HF HG x' y' o o' Io Co I Co').
-    + exact (IHr _ _ _ _ _ H2 TS t P _ Ht HP (or_introl eq_refl) Hp F G HF HG x' y' o o' Io Co I Co').
+    intros F F' G G' HF HG x' y' o o' Io Co Io' Co'. destruct (split_has _ _ _ _ _ E Io') as [I|I].
+    + exact (IHl _ _ _ _ _ H1 TS t P P' _ Ht HP (or_introl eq_refl) Hp F F' G G' HF HG x' y' o o' Io Co I Co').
+    + exact (IHr _ _ _ _ _ H2 TS t P P' _ Ht HP (or_introl eq_refl) Hp F F' G G' HF HG x' y' o o' Io Co I Co').
 Qed.
 
 Lemma margin_up_ok a b : margin w m a b <= V (margin_up w m a b).
@@ -233,50 +234,55 @@ Proof.
 Qed.
 
 (** What one root shows. *)
-Lemma root_ok pc u ts nd i j (a b : body) (before : list prepared) t : In (prepare i a) before -> checked w m a b = true ->
-  check sfs (spiece_of pc) (pr_sbody (prepare j b)) nd (pr_pieces (prepare j b))
-    (map (partner_of w m pc (prepare j b)) (filter (fun p => checked w m (pr_body p) b) before)) 0 u ts = true ->
+Lemma root_ok pc u ts nd i j (a b : body) (before : list prepared) t : In (prepare w i a) before -> checked w m a b = true ->
+  check sfs (spiece_of pc) (plays_of w (spiece_of pc)) (pr_sbody (prepare w j b)) nd (pr_pieces (prepare w j b))
+    (map (partner_of w m pc (prepare w j b)) (filter (fun p => checked w m (pr_body p) b) before)) 0 u ts = true ->
   (exists d, ts = poses_from d sfs (spiece_of pc) 0 u) ->
   0 <= t <= V u -> (forall v, In (i, j, v) (ignored pc) -> real v < t) -> apart w m (at_time pc t) a b.
 Proof.
-  intros Ia C H TS Ht HI P A B HP HA HB x y (x' & Ix & ->) (y' & Iy & ->).
-  assert (Ip : In (partner_of w m pc (prepare j b) (prepare i a))
-    (map (partner_of w m pc (prepare j b)) (filter (fun p => checked w m (pr_body p) b) before))).
+  intros Ia C H TS Ht HI P P' A B F G HP HA HB HF HG x y (x' & Ix & ->) (y' & Iy & ->).
+  assert (Ip : In (partner_of w m pc (prepare w j b) (prepare w i a))
+    (map (partner_of w m pc (prepare w j b)) (filter (fun p => checked w m (pr_body p) b) before))).
   { apply in_map. apply filter_In. split; [exact Ia | exact C]. }
-  pose proof (ignored_until_ok pc i j t (proj1 Ht) HI) as HF.
-  rewrite <- V_0 in Ht. pose proof (check_ok pc _ nd _ _ _ _ _ H TS t P _ Ht HP Ip HF) as K.
+  pose proof (ignored_until_ok pc i j t (proj1 Ht) HI) as Hu.
+  rewrite <- V_0 in Ht. pose proof (check_ok pc _ nd _ _ _ _ _ H TS t P P' _ Ht HP Ip Hu) as K.
   destruct (outlines_cover _ _ Ix) as (o & Io & Co). destruct (outlines_cover _ _ Iy) as (o' & Io' & Co').
   apply forest_of_has in Io, Io'.
-  assert (N : norm (sub (P (body_frame a) (A x')) (P (body_frame b) (B y'))) =
-              norm (sub (P (body_frame b) (B y')) (P (body_frame a) (A x')))).
+  assert (N : norm (sub (P' (body_frame a) (A (F x'))) (P' (body_frame b) (B (G y')))) =
+              norm (sub (P' (body_frame b) (B (G y'))) (P' (body_frame a) (A (F x'))))).
   { unfold norm. f_equal. unfold dot, sub, add, scale; cbn [vx vy vz]. ring. }
   rewrite N. apply Rle_lt_trans with (V (margin_up w m a b)); [apply margin_up_ok|].
-  exact (K B A (fun s => placed_ok s _ _ HB) (fun s => placed_ok s _ _ HA) y' x' o' o Io' Co' Io Co).
+  assert (ST : forall c C D s, pose_map (body_place c) C -> pose_off (body_tolerance w c) D ->
+    stands s (Sbody (body_frame c) (placed (body_place c)) (body_give w c)) C (fun p => C (D p))).
+  { intros c C' D s HC HD. split; [apply placed_ok; exact HC|]. apply pose_off_moves; [|exact HD].
+    intros p p'. apply (step_keeps s _ _ p p' (placed_ok s _ _ HC)). }
+  exact (K B (fun p => B (G p)) A (fun p => A (F p)) (fun s => ST b B G s HB HG) (fun s => ST a A F s HA HF)
+    y' x' o' o Io' Co' Io Co).
 Qed.
 
 (** All pairs of [rest], whose numbers begin with n, with what stands before them. *)
 Lemma check_bodies_ok pc u ts rest : (exists d, ts = poses_from d sfs (spiece_of pc) 0 u) ->
-  forall n before nodes left, check_bodies w m sfs pc u ts before (prepare_all n rest) nodes = Some left ->
+  forall n before nodes left, check_bodies w m sfs pc (plays_of w (spiece_of pc)) u ts before (prepare_all w n rest) nodes = Some left ->
   forall k b i a t, nth_error rest k = Some b ->
-  In (prepare i a) before \/ (exists k', (k' < k)%nat /\ nth_error rest k' = Some a /\ i = (n + k')%nat) ->
+  In (prepare w i a) before \/ (exists k', (k' < k)%nat /\ nth_error rest k' = Some a /\ i = (n + k')%nat) ->
   checked w m a b = true -> 0 <= t <= V u -> (forall v, In (i, (n + k)%nat, v) (ignored pc) -> real v < t) ->
   apart w m (at_time pc t) a b.
 Proof.
   intros TS. induction rest as [|c rest IH]; intros n before nodes left H k b i a t Nb Ia C Ht HI.
   - destruct k; discriminate.
   - cbn [prepare_all check_bodies] in H.
-    set (found := filter (fun p => checked w m (pr_body p) (pr_body (prepare n c))) before) in *.
+    set (found := filter (fun p => checked w m (pr_body p) (pr_body (prepare w n c))) before) in *.
     destruct k as [|k].
     + cbn in Nb. injection Nb as ->. destruct Ia as [Ia|(k' & L & _)]; [|lia]. rewrite Nat.add_0_r in HI.
       destruct found as [|p ps] eqn:F.
-      * assert (I : In (prepare i a) found) by (apply filter_In; split; [exact Ia | exact C]). rewrite F in I. destruct I.
+      * assert (I : In (prepare w i a) found) by (apply filter_In; split; [exact Ia | exact C]). rewrite F in I. destruct I.
       * destruct nodes as [|nd nodes']; [discriminate|].
-        destruct (check sfs _ _ nd _ _ 0 u ts) eqn:K; [|discriminate].
+        destruct (check sfs _ _ _ nd _ _ 0 u ts) eqn:K; [|discriminate].
         apply (root_ok pc u ts nd i n a b before t Ia C); [|exact TS | exact Ht | exact HI].
         change (filter (fun p => checked w m (pr_body p) b) before) with found. rewrite F. exact K.
     + cbn [nth_error] in Nb.
-      assert (LATER : forall nodes', check_bodies w m sfs pc u ts (before ++ [prepare n c])
-        (prepare_all (S n) rest) nodes' = Some left -> apart w m (at_time pc t) a b).
+      assert (LATER : forall nodes', check_bodies w m sfs pc (plays_of w (spiece_of pc)) u ts (before ++ [prepare w n c])
+        (prepare_all w (S n) rest) nodes' = Some left -> apart w m (at_time pc t) a b).
       { intros nodes' H'. replace (n + S k)%nat with (S n + k)%nat in HI by lia.
         apply (IH _ _ _ _ H' k b i a t Nb); [|exact C | exact Ht | exact HI].
         destruct Ia as [Ia|(k' & L & Na & ->)]; [left; apply in_or_app; left; exact Ia|].
@@ -285,18 +291,18 @@ Proof.
         - right. exists k'. split; [lia|]. split; [exact Na | lia]. }
       destruct found as [|p ps]; [exact (LATER _ H)|].
       destruct nodes as [|nd nodes']; [discriminate|].
-      destruct (check sfs _ _ nd _ _ 0 u ts); [|discriminate]. exact (LATER _ H).
+      destruct (check sfs _ _ _ nd _ _ 0 u ts); [|discriminate]. exact (LATER _ H).
 Qed.
 
 Lemma check_pieces_ok ps : forall nodes left,
-  check_pieces w m sfs (prepare_all 0 (bodies w)) ps nodes = Some left ->
+  check_pieces w m sfs (prepare_all w 0 (bodies w)) ps nodes = Some left ->
   forall k p, nth_error ps k = Some p ->
   let u := if Nat.eqb (S k) (length ps) then number_up (until m) else one in
-  exists nodes' left', check_bodies w m sfs p u (poses_from (kept_depth sfs) sfs (spiece_of p) 0 u) []
-    (prepare_all 0 (bodies w)) nodes' = Some left'.
+  exists nodes' left', check_bodies w m sfs p (plays_of w (spiece_of p)) u (poses_from (kept_depth sfs) sfs (spiece_of p) 0 u) []
+    (prepare_all w 0 (bodies w)) nodes' = Some left'.
 Proof.
   induction ps as [|p0 rest IH]; intros nodes left H k p N; [destruct k; discriminate|]. cbn [check_pieces] in H.
-  destruct (check_bodies w m sfs p0 _ _ [] _ nodes) as [nodes1|] eqn:B; [|discriminate].
+  destruct (check_bodies w m sfs p0 _ _ _ [] _ nodes) as [nodes1|] eqn:B; [|discriminate].
   destruct k as [|k].
   - cbn in N. injection N as <-. exists nodes, nodes1. rewrite <- B. destruct rest; reflexivity.
   - cbn [nth_error] in N. destruct (IH _ _ H k p N) as (n' & l' & E). exists n', l'. exact E.
@@ -361,20 +367,20 @@ Proof.
   pose proof (bound_ge _ 0 _ Z1 (holds_sub _ _ _ _ _ C C')). repeat split; lra.
 Qed.
 
-Lemma frame_joins_ok p p' f : frame_joins p p' f = true -> forall e, In e (elements f) -> element_joined p p' f e.
+Lemma frame_joins_ok p p' f : frame_joins p p' f = true -> forall e, In e (elements f) -> element_joined w p p' f e.
 Proof.
   unfold frame_joins, element_joined. rewrite andb_true_iff, forallb_forall. intros [H1 H2] e Ie. specialize (H1 e Ie).
   destruct e as [a v mm c | a v mm c | v]; [apply value_joins_ok; exact H1 | apply value_joins_ok; exact H1|].
-  intros O M M' HO HM HM'. apply orb_true_iff in H2. destruct H2 as [H2|H2].
+  intros O M M' N N' HO HM HM'. apply orb_true_iff in H2. destruct H2 as [H2|H2].
   { apply negb_true_iff in H2. assert (K : existsb (fun e => match e with Rotate _ => true | _ => false end) (elements f) = true)
       by (apply existsb_exists; exists (Rotate v); split; [exact Ie | reflexivity]). congruence. }
   assert (Z1 : Rabs 0 <= 1) by (rewrite Rabs_R0; lra).
-  assert (ST : forall pc t N, elements_map (at_time pc (V t)) (elements f) N ->
+  assert (ST : forall pc t M N, elements_map w (at_time pc (V t)) (elements f) M N ->
     holds_steps 0 (placed (origin f) :: flat_map (steps_of (state_at (spiece_of pc) (const t 0))) (map selement_of (elements f)))
-      (fun x => O (N x))).
-  { intros pc t N HN. apply first_step with (E := O) (M := N); [apply placed_ok; exact HO | | reflexivity].
-    apply all_steps_ok with (at_time pc (V t)); [exact Z1 | apply state_ok; [exact Z1 | apply holds_exact] | exact HN]. }
-  rewrite <- V_one in HM. rewrite <- V_0 in HM'. pose proof (ST p one M HM) as S1. pose proof (ST p' 0%Z M' HM') as S2.
+      (fun x => O (M x))).
+  { intros pc t M0 N0 HN. apply first_step with (E := O) (M := M0); [apply placed_ok; exact HO | | reflexivity].
+    apply all_steps_ok with w (at_time pc (V t)) N0; [exact Z1 | apply state_ok; [exact Z1 | apply holds_exact] | exact HN]. }
+  rewrite <- V_one in HM. rewrite <- V_0 in HM'. pose proof (ST p one M N HM) as S1. pose proof (ST p' 0%Z M' N' HM') as S2.
   assert (U : Forall2 (fun m n => holdsv m 0 n) units [Vec 1 0 0; Vec 0 1 0; Vec 0 0 1]).
   { repeat (apply Forall2_cons; [repeat split; cbn [tx ty tz vx vy vz]; try apply holds_zero; apply holds_one|]). constructor. }
   unfold rows in H2.
@@ -421,9 +427,10 @@ Qed.
 
 Lemma is_meaningful_ok w m : well_formed w -> is_meaningful w m = true -> meaningful w m.
 Proof.
-  intros WF HM. unfold is_meaningful in HM. rewrite !andb_true_iff in HM. destruct HM as [[M1 M3] M2]. split.
-  - intros p t I. rewrite forallb_forall in M3. apply frames_exist; [apply piece_means_ok, M3, I | apply WF | exact M1].
-  - intros b I. rewrite forallb_forall in M2. apply has_rotation_ok, M2, I.
+  intros WF HM. unfold is_meaningful in HM. rewrite !andb_true_iff in HM. destruct HM as [[[M0 M1] M3] M2]. split.
+  - intros p t I. rewrite forallb_forall in M3. apply frames_exist; [exact M0 | apply piece_means_ok, M3, I | apply WF | exact M1].
+  - intros b I. rewrite forallb_forall in M2. destruct (has_rotation_ok _ (M2 b I)) as [B HB]. exists B. split; [exact HB|].
+    apply not_off. intros t. apply tolerance_found. unfold tolerances_mean in M0. rewrite !andb_true_iff in M0. apply M0.
 Qed.
 
 (** That two bodies meet in the end. *)
@@ -446,7 +453,7 @@ Proof.
   split; [apply reasons_ok_ok; exact HR|]. split.
   { apply pieces_join_ok. exact HJ. }
   intros k p Np i j a b Hij Na Nb C t Ht HI.
-  destruct (check_pieces w m (map sframe_of (frames w)) (prepare_all 0 (bodies w)) (pieces m) nodes) as [left|] eqn:K;
+  destruct (check_pieces w m (map sframe_of (frames w)) (prepare_all w 0 (bodies w)) (pieces m) nodes) as [left|] eqn:K;
     [|discriminate]. clear H.
   destruct (check_pieces_ok w m _ _ _ K k p Np) as (nodes' & left' & B).
   apply (check_bodies_ok w WF m p _ _ (bodies w) ltac:(eexists; reflexivity) 0 [] nodes' left' B j b i a t Nb); [|exact C | | exact HI].

@@ -3,7 +3,7 @@
 
     As verify/contact.cpp. All models are looked at for s = 0, so what is certain is their number and remainder. *)
 From Coq Require Import Reals ZArith Lia Lra Bool List.
-From FclArtic Require Import Statement Numbers Trig Frames Enclose Leaf.
+From FclArtic Require Import Statement Numbers Trig Frames Enclose Reach Tube Leaf.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -12,28 +12,6 @@ Proof. rewrite Rabs_R0. lra. Qed.
 
 (** ** Every point of the world is one of each frame *)
 
-Lemma dot_determines a b : (forall u, dot u a = dot u b) -> a = b.
-Proof.
-  intros H. pose proof (H (Vec 1 0 0)) as X. pose proof (H (Vec 0 1 0)) as Y. pose proof (H (Vec 0 0 1)) as Z0.
-  destruct a as [a1 a2 a3], b as [b1 b2 b3]. unfold dot in *; cbn [vx vy vz] in *. f_equal; lra.
-Qed.
-
-Lemma step_onto s st E : holds_step s st E -> forall y, exists x, E x = y.
-Proof.
-  intros [km snm csm k sn cs F Hk Hsn Hcs K S HF | km wm k way F Hk Hw HF | um cm u c F Hu Hc K HF
-         | a b c pm m p F Ha Hb Hc Hp R HF] y.
-  - exists (turned k (- sn) cs y). rewrite HF. apply dot_determines. intros v.
-    rewrite dot_turned, turned_keeps_dot; [reflexivity | exact K | rewrite <- S; ring].
-  - exists (add y (scale (- way) k)). rewrite HF. destruct y as [y1 y2 y3]. unfold add, scale; cbn [vx vy vz]. f_equal; ring.
-  - exists (spun (scale (-1) u) c y). rewrite HF. apply dot_determines. intros v.
-    rewrite dot_spun, spun_keeps_dot; [reflexivity|]. rewrite <- K. unfold dot, scale; cbn [vx vy vz]. ring.
-  - exists (apply (transpose m) (sub y p)). rewrite HF.
-    replace (apply m (apply (transpose m) (sub y p))) with (sub y p).
-    + destruct y as [y1 y2 y3], p as [p1 p2 p3]. unfold sub, add, scale; cbn [vx vy vz]. f_equal; ring.
-    + apply dot_determines. intros v. rewrite dot_apply.
-      rewrite (rotation_keeps_dot (transpose m)) by (apply transpose_is_rotation; exact R). reflexivity.
-Qed.
-
 Lemma steps_onto s sts E : holds_steps s sts E -> forall y, exists x, E x = y.
 Proof.
   induction 1 as [E HE | st sts E M N HS HM IH HN]; intros y; [exists y; apply HE|].
@@ -41,30 +19,6 @@ Proof.
 Qed.
 
 (** Distances stay what they are. *)
-Lemma norm_kept a b : dot a a = dot b b -> norm a = norm b.
-Proof. intros E. unfold norm. rewrite E. reflexivity. Qed.
-
-Lemma step_keeps s st E x y : holds_step s st E -> norm (sub (E x) (E y)) = norm (sub x y).
-Proof.
-  intros [km snm csm k sn cs F Hk Hsn Hcs K S HF | km wm k way F Hk Hw HF | um cm u c F Hu Hc K HF
-         | a b c pm m p F Ha Hb Hc Hp R HF]; rewrite !HF.
-  - replace (sub (turned k sn cs x) (turned k sn cs y)) with (turned k sn cs (sub x y)).
-    + apply norm_kept, turned_keeps_dot; assumption.
-    + destruct k as [k1 k2 k3], x as [x1 x2 x3], y as [y1 y2 y3]. unfold turned, sub, add, scale, cross, dot; cbn [vx vy vz]. f_equal; ring.
-  - f_equal. destruct x as [x1 x2 x3], y as [y1 y2 y3]. unfold sub, add, scale; cbn [vx vy vz]. f_equal; ring.
-  - replace (sub (spun u c x) (spun u c y)) with (spun u c (sub x y)).
-    + apply norm_kept, spun_keeps_dot. exact K.
-    + destruct u as [k1 k2 k3], x as [x1 x2 x3], y as [y1 y2 y3]. unfold spun, sub, add, scale, cross, dot; cbn [vx vy vz]. f_equal; ring.
-  - replace (sub (add (apply m x) p) (add (apply m y) p)) with (apply m (sub x y)).
-    + apply norm_kept, rotation_keeps_dot. exact R.
-    + destruct p as [p1 p2 p3], x as [x1 x2 x3], y as [y1 y2 y3]. unfold apply, sub, add, scale, dot; cbn [vx vy vz]. f_equal; ring.
-Qed.
-
-Lemma steps_keep s sts E : holds_steps s sts E -> forall x y, norm (sub (E x) (E y)) = norm (sub x y).
-Proof.
-  induction 1 as [E HE | st sts E M N HS HM IH HN]; intros x y; [rewrite !HE; reflexivity|].
-  rewrite !HN, (step_keeps s st E _ _ HS). apply IH.
-Qed.
 
 (** ** Numbers that are certain *)
 
@@ -554,7 +508,7 @@ Definition shows (A B : geometry) (rx ry rz : func) (margin : Z) (x : witness) :
       end
   end.
 
-Definition sbody_of (b : body) : sbody := Sbody (body_frame b) (placed (body_place b)).
+Definition sbody_of (b : body) : sbody := Sbody (body_frame b) (placed (body_place b)) None.
 
 (** A pair's margin, each number of it rounded by [round]. *)
 Definition rounded_margin (round : number -> Z) (w : world) (m : motion) (a b : body) : Z :=
@@ -606,12 +560,12 @@ Variable pc : piece.
 Variable t : R.
 Variable tmodel : tm.
 Hypothesis Ht : holds tmodel 0 t.
-Variable P : nat -> vec -> vec.
-Hypothesis HP : frames_at w (at_time pc t) P.
+Variables P P' : nat -> vec -> vec.
+Hypothesis HP : frames_at w (at_time pc t) P P'.
 Let fs := tree_of (map sframe_of (frames w)) (state_at (spiece_of pc) tmodel).
 
 Lemma child_ok i k sts : nth_error fs i = Some (k, sts) -> exists E, holds_steps 0 sts E /\ forall x, P (S i) x = P k (E x).
-Proof. exact (tree_ok w pc tmodel t 0 P at_zero Ht HP i k sts). Qed.
+Proof. exact (tree_ok w pc tmodel t 0 P P' at_zero Ht HP i k sts). Qed.
 
 Lemma parents_before k p sts : nth_error fs k = Some (p, sts) -> (p <= k)%nat.
 Proof.
@@ -685,14 +639,14 @@ Proof.
 Qed.
 End Meets.
 
-Lemma meet_at_ok w pc t tmodel P a b F G d wt : well_formed w -> (body_frame b <= length (frames w))%nat ->
-  holds tmodel 0 t -> frames_at w (at_time pc t) P -> pose_map (body_place a) F -> pose_map (body_place b) G ->
+Lemma meet_at_ok w pc t tmodel P P' a b F G d wt : well_formed w -> (body_frame b <= length (frames w))%nat ->
+  holds tmodel 0 t -> frames_at w (at_time pc t) P P' -> pose_map (body_place a) F -> pose_map (body_place b) G ->
   meet_at (map sframe_of (frames w)) (state_at (spiece_of pc) tmodel) a b d wt = true ->
   exists x y, occupies P a F x /\ occupies P b G y /\ if only_near wt then norm (sub x y) <= V d else x = y.
 Proof.
   intros WF Hb Ht HP HF HG H. unfold meet_at in H.
   destruct (map _ units) as [|[rx|] [|[ry|] [|[rz|] [|]]]] eqn:R; try discriminate.
-  destruct (taken_ok w WF pc t tmodel Ht P HP (sbody_of a) (sbody_of b) F G (placed_ok 0 _ _ HF) (placed_ok 0 _ _ HG) Hb rx ry rz R)
+  destruct (taken_ok w WF pc t tmodel Ht P P' HP (sbody_of a) (sbody_of b) F G (placed_ok 0 _ _ HF) (placed_ok 0 _ _ HG) Hb rx ry rz R)
     as (M & HM & X & L). cbn [sbody_of sb_frame] in X.
   assert (MEET : forall x, inside (body_geometry a) x -> inside (body_geometry b) (M x) ->
     exists y z, occupies P a F y /\ occupies P b G z /\ y = z).
@@ -714,7 +668,7 @@ Proof.
     destruct (point_of (body_geometry b) q) as [n|] eqn:PB; [|discriminate].
     destruct (point_of_ok _ _ _ PA) as (x & Hx & Ia). destruct (point_of_ok _ _ _ PB) as (y & Hy & Ib).
     exists (P (body_frame a) (F x)), (P (body_frame b) (G y)). split; [exists x; auto|]. split; [exists y; auto|].
-    rewrite <- X, (frame_keeps w WF pc t tmodel Ht P HP (body_frame b) (body_frame b) (le_n _) Hb).
+    rewrite <- X, (frame_keeps w WF pc t tmodel Ht P P' HP (body_frame b) (body_frame b) (le_n _) Hb).
     rewrite (step_keeps 0 _ _ _ _ (placed_ok 0 _ _ HG)).
     pose proof (holdsv_sub _ _ _ _ (HM _ _ Hx) Hy) as (D1 & D2 & D3).
     exact (squares_ok _ _ _ _ _ _ (size_ok _ _ D1) (size_ok _ _ D2) (size_ok _ _ D3) H (Rle_refl _)).
@@ -733,14 +687,14 @@ Proof.
     + pose proof (number_up_ok t). apply V_le in T1. rewrite V_one in T1. lra.
   - intros u I. specialize (HI _ I). cbv beta iota in HI. rewrite !Nat.eqb_refl in HI. cbn [andb negb orb] in HI.
     apply Z.ltb_lt, V_lt in HI. pose proof (number_up_ok u). pose proof (number_down_ok t). lra.
-  - intros P A B HP HA HB.
+  - intros P P' A B HP HA HB.
     assert (Fa : (body_frame a <= length (frames w))%nat) by (apply (proj2 WF); exact (nth_error_In _ _ Na)).
     assert (Fb : (body_frame b <= length (frames w))%nat) by (apply (proj2 WF); exact (nth_error_In _ _ Nb)).
     pose proof (margin_down_ok w m a b) as MD. cbv zeta in H. destruct first.
-    + destruct (meet_at_ok w p _ _ P a b A B _ wt WF Fb (holds_number 0 t) HP HA HB H) as (x & y & X & Y & Q).
+    + destruct (meet_at_ok w p _ _ P P' a b A B _ wt WF Fb (holds_number 0 t) HP HA HB H) as (x & y & X & Y & Q).
       exists x, y. split; [exact X|]. split; [exact Y|]. destruct (only_near wt); [lra | exact Q].
-    + destruct (meet_at_ok w p _ _ P b a B A _ wt WF Fa (holds_number 0 t) HP HB HA H) as (x & y & X & Y & Q).
+    + destruct (meet_at_ok w p _ _ P P' b a B A _ wt WF Fa (holds_number 0 t) HP HB HA H) as (x & y & X & Y & Q).
       exists y, x. split; [exact Y|]. split; [exact X|]. destruct (only_near wt); [|symmetry; exact Q].
-      replace (norm (sub y x)) with (norm (sub x y)); [lra|]. apply norm_kept.
+      replace (norm (sub y x)) with (norm (sub x y)); [lra|]. apply norm_of_dots.
       unfold dot, sub, add, scale; cbn [vx vy vz]. ring.
 Qed.

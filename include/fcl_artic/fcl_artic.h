@@ -26,6 +26,7 @@
 #include "fcl_artic/request.h"
 #include "fcl_artic/result.h"
 #include "fcl_artic/solid_mesh.h"
+#include "fcl_artic/tolerance_left.h"
 #include "fcl_artic/tool_line.h"
 #include "fcl_artic/trajectory.h"
 #include "fcl_artic/visibility.h"

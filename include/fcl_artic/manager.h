@@ -14,6 +14,7 @@
 #include "fcl_artic/references.h"
 #include "fcl_artic/request.h"
 #include "fcl_artic/result.h"
+#include "fcl_artic/tolerance_left.h"
 #include "fcl_artic/trajectory.h"
 #include "fcl_artic/tube.h"
 #include "fcl_artic/visibility.h"
@@ -406,6 +407,18 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// @throws std::invalid_argument, std::logic_error as for a motion.
   [[nodiscard]] Clearance clearance(const JointTrajectory& trajectory, const ClearanceRequest& request = {}) const;
 
+  /// Finds how many times all tolerances together may be as large, so that the motion is still free (ToleranceLeft),
+  /// with the pair and the time that limit it. Margins count.
+  /// @throws std::invalid_argument if the motion is of other joint variables, and for values of the request that are
+  ///   out of range (ToleranceLeftRequest).
+  /// @throws std::logic_error as continuousCollide(), and where no tolerance is set.
+  [[nodiscard]] ToleranceLeft toleranceLeft(const JointMotion& motion, const ToleranceLeftRequest& request = {}) const;
+  /// Finds how many times all tolerances together may be as large, so that the trajectory is still free. It comes with
+  /// the pair and the time, the trajectory's own, that limit it.
+  /// @throws std::invalid_argument, std::logic_error as for a motion.
+  [[nodiscard]] ToleranceLeft toleranceLeft(const JointTrajectory& trajectory,
+                                            const ToleranceLeftRequest& request = {}) const;
+
   /// Drops points that a sensor has seen of the robot itself. These lie in or within `padding` of the geometry that
   /// links carry at q, attached objects included; obstacles do not count. A mesh is its surface, unless it is a solid.
   /// The others keep their order.
@@ -450,11 +463,14 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   struct Impl;
   struct QueryContext;
   friend class Guard;
+  struct MotionQueries;
   void collideMotion(const JointMotion& motion, const CertifiedRequest& request, CertifiedResult& result) const;
   void collideMotion(const JointMotion& motion, const CertifiedRequest& request, const QueryContext& context,
                      CertifiedResult& result) const;
   void collideTrajectory(const JointTrajectory& trajectory, const CertifiedRequest& request,
                          const QueryContext& context, CertifiedResult& result) const;
+  MotionQueries queriesOf(const JointMotion& motion) const;
+  MotionQueries queriesOf(const JointTrajectory& trajectory) const;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -248,6 +248,7 @@ let refuse_unused l w geometries used =
   List.iter (fun (a, _) -> there "'margin'" a) w.margins;
   List.iter (fun ((a, b), _) -> there "'margin'" a; there "'margin'" b) w.pair_margins;
   List.iter (fun u -> there "'unchecked'" u.one_name; there "'unchecked'" u.other_name) w.unchecked;
+  List.iter (fun (b, _) -> there "'tolerance'" b) w.off.of_bodies;
   for k = 0 to geometries - 1 do
     if not used.(k) then fail l (Printf.sprintf "no body has the geometry %d" k)
   done;
@@ -263,11 +264,120 @@ let refuse_unused l w geometries used =
   if ((all * (all - 1)) - (obstacles * (obstacles - 1))) / 2 > most_pairs then
     fail l "there are more than 20 million pairs to look at"
 
+(* ---- Tolerances ---- *)
+
+(* The lines `tolerance`, in the order of the file. *)
+type tolerance_lines = {
+  mutable variables : (int * number) list;
+  mutable vectors : (int * (int * number)) list;  (* how many slides, and the length *)
+  mutable rotations : (int * number) list;
+  mutable frames_off : (int * pose_tolerance) list;
+  mutable bodies_off : (string * pose_tolerance) list;
+}
+
+let zero_number = { mantissa = Z.zero; exponent = Z.zero }
+let is_zero x = Z.sign x.mantissa = 0
+
+(* A line after its first word. *)
+let tolerance l t variables frames =
+  let above_0 x = if is_zero x then fail l "a tolerance is above 0" in
+  let fresh list key = if List.mem_assoc key list then fail l "the tolerance is there already" in
+  let plain () =
+    let v = integer l variables in
+    let d = not_negative l in
+    above_0 d;
+    (v, d)
+  in
+  let pose () =
+    let most_shift = not_negative l in
+    let most_angle = not_negative l in
+    let pivot = three l number in
+    if is_zero most_shift then above_0 most_angle;
+    { most_shift; most_angle; pivot }
+  in
+  (match word l with
+  | "variable" ->
+      let v, d = plain () in
+      fresh t.variables v;
+      t.variables <- (v, d) :: t.variables
+  | "vector" ->
+      let v = integer l variables in
+      let count = integer l 4 in
+      if count < 2 then fail l "a vector has two or three variables";
+      let length = not_negative l in
+      above_0 length;
+      fresh t.vectors v;
+      t.vectors <- (v, (count, length)) :: t.vectors
+  | "rotation" ->
+      let v, d = plain () in
+      fresh t.rotations v;
+      t.rotations <- (v, d) :: t.rotations
+  | "frame" ->
+      let f = integer l frames in
+      if f = 0 then fail l "frame 0 is the world";
+      fresh t.frames_off f;
+      t.frames_off <- (f, pose ()) :: t.frames_off
+  | "body" ->
+      let b = name l in
+      fresh t.bodies_off b;
+      t.bodies_off <- (b, pose ()) :: t.bodies_off
+  | _ -> fail l "a tolerance is of a variable, vector, rotation, frame or body");
+  last l
+
+(* Refuses tolerances without a meaning, and those that TUBES refuses: of single variables of a `rotate`, and of vectors
+   whose slides do not follow each other, differ in their multiplier, or have tolerances of their own. *)
+let check_tolerances l t w =
+  let refuse kind v why = fail l (Printf.sprintf "'tolerance %s %d': %s" kind v why) in
+  let moved = Hashtbl.create 16 and first = Hashtbl.create 16 and rotated = Hashtbl.create 16 in
+  let same_size a b = Z.equal (Z.abs a.mantissa) (Z.abs b.mantissa) && Z.equal a.exponent b.exponent in
+  let rec is_vector m v count = function
+    | Slide (_, u, n, _) :: rest when u = v && same_size m n -> count = 1 || is_vector m (v + 1) (count - 1) rest
+    | _ -> false
+  in
+  (* [before]: the elements of the frame that come before this one, the last one first. *)
+  let of_vector before e rest u m =
+    List.iter
+      (fun (v, (count, _)) ->
+        if u >= v && u < v + count then begin
+          let place = u - v in
+          let from = List.rev_append (List.filteri (fun k _ -> k < place) before) (e :: rest) in
+          let multiplier = match from with Slide (_, _, n, _) :: _ -> n | _ -> m in
+          let slides = match e with Slide _ -> true | _ -> false in
+          if (not slides) || place > List.length before || (not (is_vector multiplier v count from)) || List.mem_assoc u t.variables
+          then refuse "vector" v "its variables do more than slide one after the other, or have tolerances of their own";
+          if place = 0 then Hashtbl.replace first v ()
+        end)
+      t.vectors
+  in
+  let rec elements before = function
+    | [] -> ()
+    | e :: rest ->
+        (match e with
+        | Turn (_, u, m, _) | Slide (_, u, m, _) ->
+            Hashtbl.replace moved u ();
+            of_vector before e rest u m
+        | Rotate u ->
+            Hashtbl.replace rotated u ();
+            for v = u to u + 2 do if List.mem_assoc v t.variables then refuse "variable" v "it is one of a 'rotate'" done);
+        elements (e :: before) rest
+  in
+  List.iter (fun f -> elements [] f.elements) w.frames;
+  let needs kind table does (v, _) = if not (Hashtbl.mem table v) then refuse kind v ("no element " ^ does ^ " by it") in
+  List.iter (needs "variable" moved "slides or turns") t.variables;
+  List.iter (needs "vector" first "is the first of such slides") t.vectors;
+  List.iter (needs "rotation" rotated "rotates") t.rotations;
+  let parents = Array.of_list (0 :: List.map (fun f -> f.parent) w.frames) in
+  let occupied = Array.make (Array.length parents) false in
+  List.iter (fun b -> occupied.(b.body_frame) <- true) w.bodies;
+  for f = Array.length parents - 1 downto 1 do if occupied.(f) then occupied.(parents.(f)) <- true done;
+  List.iter (fun (f, _) -> if not occupied.(f) then refuse "frame" f "no body is in it or below it") t.frames_off
+
 let world text =
   let l = start text "world" "fcl_artic world 1" in
   let variables = ref 0 and frames = ref [] and frame_count = ref 1 and geometries = ref [||] and bodies = ref [] in
   let depths = ref [| 0 |] and used = ref [||] in
   let margins = ref [] and pair_margins = ref [] and unchecked = ref [] in
+  let t = { variables = []; vectors = []; rotations = []; frames_off = []; bodies_off = [] } in
   let same a b (c, d) = (a = c && b = d) || (a = d && b = c) in
   while next l do
     match word l with
@@ -351,13 +461,19 @@ let world text =
         last l;
         if List.exists (fun u -> same a b (u.one_name, u.other_name)) !unchecked then fail l "the pair is listed already";
         unchecked := { why; one_name = a; other_name = b } :: !unchecked
+    | "tolerance" -> tolerance l t !variables !frame_count
     | kind -> fail l ("there is no item '" ^ kind ^ "'")
   done;
+  let off =
+    { of_variables = t.variables; of_vectors = List.map (fun (v, (_, length)) -> (v, length)) t.vectors;
+      of_rotations = t.rotations; of_frames = t.frames_off; of_bodies = t.bodies_off }
+  in
   let w =
     { frames = List.rev !frames; bodies = List.rev !bodies; margins = !margins; pair_margins = !pair_margins;
-      unchecked = !unchecked }
+      unchecked = !unchecked; off }
   in
   refuse_unused l w (Array.length !geometries) !used;
+  check_tolerances l t w;
   let moved = Array.make !variables false and turned = Array.make !variables false in
   let element = function
     | Turn (_, v, _, _) | Slide (_, v, _, _) -> moved.(v) <- true

@@ -26,7 +26,7 @@ REACHABLE = {
     "Unwrap": "JointTrajectory.linear",  # unwrap=True
     "inBetweenTree": "in_between_tree",
     "inBetweenMotion": "in_between_motion",
-    # request.h, result.h, bracket.h, statistics.h, clearance.h, certificate.h, pair_result.h
+    # request.h, result.h, bracket.h, statistics.h, clearance.h, tolerance_left.h, certificate.h, pair_result.h
     "ContactMode": "ContactMode",
     "VisibilityMode": "VisibilityMode",
     "Method": "Method",
@@ -73,6 +73,8 @@ REACHABLE = {
     "ToolDeviation": "ToolDeviation",
     "toolDeviation": "tool_deviation",
     "Clearance": "Clearance",
+    "ToleranceLeftRequest": "World.tolerance_left",  # its options
+    "ToleranceLeft": "ToleranceLeft",
     "Certificate": "Certificate",
     # manager.h, link_pairs.h
     "ArticulatedCollisionManager": "World",

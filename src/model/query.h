@@ -28,13 +28,18 @@ struct HalfAngles {
 struct Clock {
   double begin = 0, end = 1;
 };
+/// How the problem's strays count (Problem::strays).
+struct TubeAsked {
+  double factor = 1;  ///< times which lengths and angles count, at least 0
+  Clock clock;
+};
 
 struct Query {
   /// Variable v at time t: sum over k of coefficients[k * num_variables + v] t^k, for k = 0..degree (at least 1).
   const double* coefficients = nullptr;
   std::int32_t num_variables = 0, degree = 1;
   HalfAngles half_angles;
-  Clock clock;
+  TubeAsked tube;
   const double* orientations = nullptr;  ///< rotations R0 of turns, row-major, nine numbers each
   double tolerance_time = 1e-6, tolerance_distance = 1e-6;
   Margins margins;

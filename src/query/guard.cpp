@@ -150,7 +150,7 @@ void Guard::Impl::measureRobot() {
 /// brings two bodies nearer by no more than the lever times the angle. Tables and proofs of ranges are asked about all
 /// values between.
 double Guard::Impl::payForParts() {
-  const VariableStrays of_robot = manager->impl_->setup.variableStrays();
+  const VariableStrays of_robot = manager->impl_->setup.variableStrays(1);
   const Eigen::VectorXd& error = path->partError();
   for (Eigen::Index v = 0; v < error.size(); ++v) {
     strays[static_cast<std::size_t>(v)] = kUp * (of_robot.of(static_cast<int>(v)) + error[v]);
@@ -165,6 +165,10 @@ void Guard::Impl::begin(const LiveScene::Snapshot& scene, double now, double at)
   manager = &scene.manager;
   const Registry& registry = manager->impl_->registry;
   manager->impl_->requireReady();
+  if (!manager->impl_->setup.isOf(*tree)) {  // levers go by the tree's links and joints
+    throw std::invalid_argument("Guard: the scene is of robot '" + registry.tree()->name() +
+                                "', and the guard was made for robot '" + tree->name() + "', another tree");
+  }
   path->trajectory().requireOf(*registry.tree());
   if (!registry.moving().empty()) {
     throw std::invalid_argument("Guard: obstacle '" + registry.moving().front().name +

@@ -75,7 +75,7 @@ struct ArticulatedCollisionManager::Impl {
     engine::Margins margins = marginsOf(request);
     (own_margins ? setup.margins() : setup.marginsOfNeighbours()).putInto(margins);
     const ProvenPairs& proven = setup.proven();
-    result.unproven_allowed_pairs = proven.unprovenAllowed(motions, num_motions, setup.variableStrays(), margins,
+    result.unproven_allowed_pairs = proven.unprovenAllowed(motions, num_motions, setup.variableStrays(1), margins,
                                                            request.check_self, request.check_scene);
     result.unproven_neighbours = request.check_self ? proven.undecidedNeighbours() : nullptr;
   }

@@ -263,7 +263,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   }
   engine::Query query = makeQuery(request);
   query.check_scene = request.check_scene;
-  query.clock = context.clock;
+  query.tube = {context.stray_factor, context.clock};
   if (context.limit) {
     query.max_contacts = 1;
     query.describe_contacts = false;
@@ -277,12 +277,13 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   const WorkspaceLoan workspace;
   setVariables(motion, setup.movingCoefficients(), context.time, workspace->coefficients, query);
   engine::Problem problem = setup.problem();
+  problem.strays = problem.strays && (context.stray_factor > 0 || setup.moves());
   const BoundedParts parts(context.time, problem);
   (context.own_margins ? setup.margins() : setup.marginsOfNeighbours()).putInto(query.margins);
   restrictPairs(request, setup, problem, query.margins);
   if (context.left_out && !context.left_out->empty()) leaveOut(*context.left_out, *workspace, problem);
   const VariableStrays variable_strays =
-      context.variable_strays ? VariableStrays{context.variable_strays} : setup.variableStrays();
+      context.variable_strays ? VariableStrays{context.variable_strays, 1} : setup.variableStrays(context.stray_factor);
   TableAdvice advice{setup.tables(), setup.proven(), problem, motion, variable_strays, query.margins, *workspace};
   if (request.check_self && request.method == Method::standard) query.ask(advice.advisor());
   if (context.may_ignore) {
@@ -304,7 +305,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   for (std::int32_t i = 0; i < answer.num_contacts && !context.limit; ++i) {
     result.contacts.push_back(report(registry, motion, context.time, answer.contacts[i]));
   }
-  if (setup.strays() && !result.isFree() && !context.limit) {
+  if (problem.strays && !result.isFree() && !context.limit) {
     findWitnesses({problem, query, motion, context.time}, registry, variable_strays, answer, *workspace, result);
   }
   keepFirstOfEachPair(result.certain, result.contacts);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -24,11 +25,12 @@ inline TimePart partOfTime(const JointTrajectory& trajectory, std::size_t piece)
   return {at(piece), at(piece + 1)};
 }
 
-/// Settings beyond the request of a query of one motion, for trajectories and clearance().
+/// Settings beyond the request of a query of one motion: for trajectories, and for searches that ask many queries.
 struct ArticulatedCollisionManager::QueryContext {
   TimePart time;            ///< the part of the moving obstacles' motions that the query's [0, 1] is
   engine::Clock clock;      ///< the time that has passed since the motion's begin, in the motion's unit
   bool own_margins = true;  ///< pairs' own margins hold; false: those of neighbours alone (clearance())
+  double stray_factor = 1;  ///< times which tolerances of joints, base and objects count; 0: they do not
   /// Pairs of the engine's problem: only their initial contacts may be ignored; null: those of all pairs may.
   const std::vector<engine::PairId>* may_ignore = nullptr;
   /// Pairs that are not checked, as if they were allowed; null: none. Their numbers are of the problem that the
@@ -44,7 +46,6 @@ struct ArticulatedCollisionManager::QueryContext {
   /// Out, for those who want no more than a bracket and the pair that limits it; null: the answer is reported in full.
   /// The result then has no contacts, no witnesses and no poses.
   std::optional<engine::LeafContact>* limit = nullptr;
-
   const double* variable_strays = nullptr;  ///< rad or m, by variable, in place of the set-up's
 
   /// The settings of a query of one piece.
@@ -53,13 +54,15 @@ struct ArticulatedCollisionManager::QueryContext {
     const double begin = trajectory.beginTime();
     clock = {trajectory.times()[piece] - begin, trajectory.times()[piece + 1] - begin};
   }
-  /// The settings of a query of clearance(): pairs' own margins do not hold, but neighbours' do.
-  static QueryContext ofClearance(const std::vector<engine::PairId>& left_out) {
-    QueryContext context;
-    context.own_margins = false;
-    context.left_out = &left_out;
-    return context;
-  }
+};
+
+/// The queries about one motion or trajectory that a search asks (query/bracket_search.h).
+struct ArticulatedCollisionManager::MotionQueries {
+  using Context = QueryContext;
+  using Ask = std::function<void(const CertifiedRequest& request, const Context& context, CertifiedResult& result)>;
+  double duration;  ///< in the unit that its times are in
+  Ask whole;
+  Ask beginning;  ///< of the motion, or of a trajectory's first piece
 };
 
 }  // namespace fcl_artic

@@ -59,9 +59,10 @@ class Setup {
   /// The same of its rows of movers.
   std::int32_t numSelfRows() const { return static_cast<std::int32_t>(link_movers_.num_self_rows); }
   /// How far variables stray, for those who look at ranges of them.
-  VariableStrays variableStrays() const {
+  /// @param factor  times which tolerances count; 0: nothing strays.
+  VariableStrays variableStrays(double factor) const {
     const std::vector<double>& of = strays_.of_robot.of_variable;
-    return {of.empty() ? nullptr : of.data()};
+    return {of.empty() || factor == 0 ? nullptr : of.data(), factor};
   }
   /// Tolerances of the joints, in the tree's order; empty: none strays.
   const std::vector<JointTolerance>& jointTolerances() const { return strays_.of_robot.of_joint; }

@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 
 #include <fcl/geometry/shape/box.h>
+#include <fcl/math/motion/translation_motion.h>
+#include <fcl/narrowphase/continuous_collision_object.h>
 
 #include "../query/arms.h"
 #include "../support/random_placing.h"
@@ -251,6 +253,18 @@ TEST(Guard, WhatIsRefused) {
   EXPECT_THROW(guard.ask(*scene, 0, 11, 1.1, answer), std::invalid_argument);
   EXPECT_THROW(guard.ask(*scene, std::nan(""), 11, 1, answer), std::invalid_argument);
   EXPECT_THROW(LiveScene(track.cart.manager->copy(), std::nan("")), std::invalid_argument);
+  // The same joint variables on other links.
+  auto longer = sliderTree({"rail", "cart"});
+  longer->addLink("tool");
+  longer->addJoint(makeJoint("mount", JointType::fixed, "cart", "tool", Vector3d::UnitX(), pose({1, 0, 0})));
+  const LiveScene other{ArticulatedCollisionManager(longer)};
+  EXPECT_THROW(guard.ask(*other.latest(), 0, 11, 1, answer), std::invalid_argument);
+  // An obstacle with a motion of its own does not stop for anybody.
+  Track moving;
+  const auto mover = std::make_shared<fcl::ContinuousCollisionObjectd>(
+      std::make_shared<fcl::Sphered>(0.1), std::make_shared<fcl::TranslationMotiond>(pose({5, 0, 0}), pose({4, 0, 0})));
+  moving.cart.manager->registerObject(mover);
+  EXPECT_THROW(moving.ask(*LiveScene(moving.cart.manager->copy()).latest(), 0, 11, 1), std::invalid_argument);
 }
 
 TEST(LiveScene, IsRenewedWholeOrNotAtAll) {

@@ -100,6 +100,8 @@ class World {
   void ask(const fcl_artic::CertifiedRequest& request, fcl_artic::CertifiedResult& result) const;
   /// @throws std::invalid_argument for two bodies, which no manager has.
   std::string writeQuery(const fcl_artic::CertifiedRequest& request) const;
+  /// Null for two bodies. What is changed is the caller's to set up.
+  fcl_artic::ArticulatedCollisionManager* manager() { return manager_.get(); }
 
  private:
   void addPair(Random& random);

@@ -77,6 +77,22 @@ TEST_F(MendTest, WhatIsNoWayAndNoOptionIsRefused) {
   expectContains(refusal({0, 1}), "the manager is null");
 }
 
+/// A ball stands 0.05 m beside the way: within 0.1 rad, at 1 m, the arm may touch it.
+TEST_F(MendTest, AMendedWayIsFreeWithinTheTolerances) {
+  const auto ball = std::make_shared<fcl::Sphered>(0.1);
+  way_.positions = {Eigen::Vector2d(0, 0), Eigen::Vector2d(4, 0)};
+  for (const double angle : {0.0, 0.1}) {
+    World world(manager_->sharedTree());
+    world.bind("arm", ball, at(1, 0)).obstacle(ball, at(3, 0.25)).tolerance({angle, 0});
+    const auto manager = world.manager();
+    const Mended mended = mend(manager, way_, {0, 1}, JointTrajectory::Unwrap::no);
+    EXPECT_EQ(mended.detours, angle == 0 ? 0u : 1u);
+    for (std::size_t k = 1; k < mended.waypoints.positions.size(); ++k) {
+      EXPECT_TRUE(manager->isFree(mended.waypoints.positions[k - 1], mended.waypoints.positions[k]));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace mend_test
 }  // namespace fcl_artic::planning

@@ -122,6 +122,29 @@ TEST(ContinuousMotionValidatorTest, MarginMovesTheContact) {
   EXPECT_GT(t, 0.5 - 3 * kTolerance);
 }
 
+TEST(ContinuousMotionValidatorTest, TolerancesOfTheManagerCountForStatesAndMotions) {
+  World world = slideWorld();
+  world.tolerance({0, 0.3});  // faces meet at 2: what is beyond 1.7 may touch
+  const Planning planning(std::move(world), reals(1)), exact(slideWorld(), reals(1));
+  for (const double q : {1.69, 1.75, 4.25, 4.31}) {
+    EXPECT_TRUE(exact.si->isValid(TestState(exact.space, {q}))) << q;
+    EXPECT_EQ(planning.si->isValid(TestState(planning.space, {q})), q < 1.7 || q > 4.3) << q;
+  }
+  EXPECT_EQ(lastValid(planning, {0}, {1.69}), 2);
+  EXPECT_EQ(lastValid(exact, {0}, {1.75}), 2);
+  const double t = lastValid(planning, {0}, {1.75});
+  EXPECT_LT(t, 1.7 / 1.75);
+  EXPECT_GT(t, 1.7 / 1.75 - 3 * kTolerance);
+  EXPECT_EQ(lastValid(planning, {1.75}, {0}), 0);
+  // A start within the tolerances may be left, and no motion comes back to one.
+  CertifiedRequest lenient = planningRequest();
+  lenient.ignore_initial_contact = true;
+  const Planning leaving(World(std::move(slideWorld().tolerance({0, 0.3}))), reals(1), lenient);
+  const TestState near(leaving.space, {1.75}), far(leaving.space, {0});
+  EXPECT_TRUE(leaving.si->checkMotion(near, far));
+  EXPECT_FALSE(leaving.si->checkMotion(far, near));
+}
+
 TEST(ContinuousMotionValidatorTest, LastValidStateLeavesRoomWhereTheMotionGrazes) {
   // A ball of 0.1 m on a slide of 8 m passes the like at 3 m and overlaps it by no more than `deep`: the gap hardly
   // changes about the contact.

@@ -55,6 +55,10 @@ class World {
     manager_->setMargin(a, b, margin);
     return *this;
   }
+  World& tolerance(const JointTolerance& of_all_joints) {
+    manager_->setJointTolerances(of_all_joints);
+    return *this;
+  }
   std::shared_ptr<const ArticulatedCollisionManager> manager() const {
     manager_->setup();
     return manager_;

@@ -225,7 +225,10 @@ bool same(const CertifiedContact& x, const CertifiedContact& y) {
   return x.body1.name == y.body1.name && x.body2.name == y.body2.name && x.body1.link == y.body1.link &&
          (octree(x.o1) || x.b1 == y.b1) && (octree(x.o2) || x.b2 == y.b2) && x.feature == y.feature &&
          x.certain == y.certain && sameBits(x.t_lower, y.t_lower) && sameBits(x.t_upper, y.t_upper) &&
-         sameBits(x.point.data(), y.point.data(), 24) && sameBits(x.normal.data(), y.normal.data(), 24);
+         sameBits(x.point.data(), y.point.data(), 24) && sameBits(x.normal.data(), y.normal.data(), 24) &&
+         x.q_witness.size() == y.q_witness.size() &&
+         sameBits(x.q_witness.data(), y.q_witness.data(),
+                  sizeof(double) * static_cast<std::size_t>(x.q_witness.size()));
 }
 template <class Result>
 bool sameVerdict(const Result& a, const Result& b) {
@@ -279,6 +282,7 @@ class Sequence {
     }
     for (auto& q : ends_) q = configuration();
     for (int i = 0; i < 4; ++i) registerOrBind(*bodies_[static_cast<std::size_t>(i)]);
+    for (int i = random_.below(4); i > 0; --i) tolerances();
     last_motion_ = 0;
   }
 
@@ -341,6 +345,7 @@ class Sequence {
       if (a != name && b != name) rest.allow(a, b);
     }
     allowed_ = rest;
+    tolerances_.of_object.erase(name);
   }
   void attachOrDetach(Body& body) {
     if (body.moving) return;
@@ -426,6 +431,37 @@ class Sequence {
     }
     changed();
   }
+  /// From scratch, tolerances of 0 are not said at all, unless in place of those of all joints.
+  void tolerances() {
+    const double size = random_.oneIn(3) ? 0 : random_.uniform(0, 0.05);
+    const PoseTolerance pose{size, random_.oneIn(2) ? 0 : size, Vector3d::Zero()};
+    const Body& body = any();
+    const JointId joint = random_.below(tree_->numJoints());
+    switch (random_.below(6)) {
+      case 0:
+        manager_.setJointTolerances(tolerances_.of_all = {size, size});
+        break;
+      case 1: {
+        const JointType type = tree_->joint(joint).type;
+        const bool slides = type == JointType::planar || type == JointType::floating;
+        const JointTolerance own{size, slides ? size : 0};
+        manager_.setJointTolerance(tree_->joint(joint).name, tolerances_.of_joint[tree_->joint(joint).name] = own);
+        break;
+      }
+      case 2:
+        manager_.setBaseTolerance(tolerances_.of_base = pose);
+        break;
+      case 3:
+        if (body.place != Body::obstacle && body.place != Body::attached) return;
+        manager_.setObjectTolerance(body.name, tolerances_.of_object[body.name] = pose);
+        break;
+      default:
+        manager_.resetTolerances();
+        tolerances_ = {};
+    }
+    said_ = said_ || !manager_.describeTolerances().empty();
+    changed();
+  }
   void allow() {
     AllowedCollisionMatrix matrix;
     for (int i = random_.below(4); i > 0; --i) {
@@ -480,7 +516,7 @@ class Sequence {
         updateSome();
         break;
       case 7:
-        if (random_.oneIn(2)) margins();
+        random_.oneIn(2) ? margins() : tolerances();
         break;
       case 8:
         if (random_.oneIn(2)) allow();
@@ -559,6 +595,8 @@ class Sequence {
     const auto scratch = fromScratch(copies);
     scratch->continuousCollide(motion, request_, expected);
     counts_.count("answers");
+    counts_.count("with tolerances", !manager_.describeTolerances().empty());
+    counts_.count("with tolerances reset", said_ && manager_.describeTolerances().empty());
     counts_.count("contacts", expected.status == Status::contact);
     if (!same(result, expected)) {
       failure_ = "it says " + shown(result) + ", from scratch " + shown(expected);
@@ -596,9 +634,24 @@ class Sequence {
       b.empty() ? scratch->setMargin(a, margin) : scratch->setMargin(a, b, margin);
     }
     scratch->setAllowedCollisions(allowed_);
+    if (tolerances_.of_all.any()) scratch->setJointTolerances(tolerances_.of_all);
+    for (const auto& [joint, own] : tolerances_.of_joint) {
+      if (own.any() || tolerances_.of_all.any()) scratch->setJointTolerance(joint, own);
+    }
+    if (tolerances_.of_base.any()) scratch->setBaseTolerance(tolerances_.of_base);
+    for (const auto& [name, own] : tolerances_.of_object) {
+      if (own.any()) scratch->setObjectTolerance(name, own);
+    }
     scratch->setup();
     return scratch;
   }
+
+  struct Tolerances {
+    JointTolerance of_all;
+    std::map<std::string, JointTolerance> of_joint;
+    PoseTolerance of_base;
+    std::map<std::string, PoseTolerance> of_object;
+  };
 
   struct Margin {
     std::string a, b;
@@ -614,6 +667,8 @@ class Sequence {
   ArticulatedCollisionManager manager_;
   std::vector<Margin> margins_;
   AllowedCollisionMatrix allowed_;
+  Tolerances tolerances_;
+  bool said_ = false;  ///< there were tolerances
   VectorXd ends_[3];
   CertifiedRequest request_;
   int last_motion_ = 0;
@@ -741,7 +796,7 @@ class ManyBodies {
 /// Sequences of 30 changes each. How often an edit in place that was looked at has changed the answer, tells whether
 /// edits are telling.
 template <class Kind>
-void expectAsIfBuiltFromScratch(std::uint64_t answers_each) {
+campaign::Tally expectAsIfBuiltFromScratch(std::uint64_t answers_each) {
   campaign::Campaign sequences;
   sequences.look = [](campaign::Case& c) {
     const std::string failure = Kind(c).run(30);
@@ -756,12 +811,15 @@ void expectAsIfBuiltFromScratch(std::uint64_t answers_each) {
   EXPECT_GT(all.share("edits telling", "edits read"), 0.1);
   EXPECT_GT(all.share("contacts", "answers"), 0.1);
   EXPECT_LT(all.share("contacts", "answers"), 0.9);
+  return all;
 }
 
 }  // namespace
 
 TEST(ChangesCampaign, ManagerIsAsIfBuiltFromScratch) {
-  expectAsIfBuiltFromScratch<Sequence>(3);
+  const campaign::Tally all = expectAsIfBuiltFromScratch<Sequence>(3);
+  EXPECT_GT(all.share("with tolerances", "answers"), 0.1);
+  EXPECT_GT(all.share("with tolerances reset", "answers"), 0.03);
 }
 
 TEST(ChangesCampaign, ManyBodiesAreAsIfBuiltFromScratch) {

@@ -182,6 +182,56 @@ void lookAtSpeeds(const Scene& real, const Tolerances& tolerances, const std::ve
   }
 }
 
+/// The motion itself, some at random within the tolerances, and corners that bring the nearest pairs together.
+std::vector<Deviation> deviationsOf(const Scene& scene, const Tolerances& tolerances, const Truth& truth,
+                                    Random& random) {
+  const std::size_t n = tolerances.links.size();
+  std::vector<Deviation> tried(1, Deviation{std::vector<double>(n, 0), std::vector<double>(n, 0)});
+  for (int k = 0; k < 8; ++k) {
+    Deviation deviation;
+    for (std::size_t v = 0; v < n; ++v) {
+      const double t = tolerances.of_variable[v];
+      const double one = t * (k < 4 ? random.sign() : random.uniform(-1, 1));
+      deviation.begin.push_back(one);
+      deviation.end.push_back(k % 2 ? t * random.uniform(-1, 1) : one);
+    }
+    tried.push_back(deviation);
+  }
+  std::vector<PairTruth> nearest = truth.pairs;
+  std::sort(nearest.begin(), nearest.end(), [](const auto& x, const auto& y) { return x.gap < y.gap; });
+  for (std::size_t k = 0; k < std::min<std::size_t>(3, nearest.size()); ++k) {
+    if (!nearest[k].hit) tried.push_back(worst(scene, tolerances, nearest[k]));
+  }
+  return tried;
+}
+
+/// A proven contact's configuration is in the tube, and the two bodies touch there.
+/// @return whether it is another one than the motion's at that time.
+bool lookAtWitness(const Scene& scene, const Tolerances& tolerances, const Eigen::VectorXd& q, double time, int body1,
+                   int body2, Case& c) {
+  const std::size_t n = tolerances.links.size();
+  if (q.size() != static_cast<Eigen::Index>(n)) {
+    c.fault("witness", "of another size");
+    return false;
+  }
+  Scene real = scene;
+  const Kinematics kinematics(scene);
+  bool nominal = true;
+  for (std::size_t v = 0; v < n; ++v) {
+    const auto i = static_cast<Eigen::Index>(v);
+    const double at = scene.q0[v] + time * kinematics.deltaQ(static_cast<int>(v));
+    nominal = nominal && std::abs(q[i] - at) < 1e-12;
+    if (std::abs(q[i] - at) > tolerances.of_variable[v] + 1e-13 * (1 + std::abs(at))) {
+      c.fault("witness", format("variable %zu is off by %.17g", v, q[i] - at));
+    }
+    real.q0[v] = real.q1[v] = q[i];
+  }
+  real.shortest = false;
+  const Proximity near = Oracle(real).at(body1, body2, 0, 0.5);
+  if (!near.touching && near.gap > 1e-9) c.fault("witness", format("the bodies are %.6g apart at it", near.gap));
+  return !nominal;
+}
+
 void lookAtCase(Case& c) {
   Asked asked(c.id.seed);
   asked.scene = makeScene(c.id.family, c.id.seed);
@@ -212,23 +262,7 @@ void lookAtCase(Case& c) {
   // Before t_lower every motion of the tube is free.
   const Truth& truth = asked.truth();
   c.tally.count("nominal hits", truth.hit);
-  const std::size_t n = tolerances.links.size();
-  std::vector<Deviation> tried(1, Deviation{std::vector<double>(n, 0), std::vector<double>(n, 0)});
-  for (int k = 0; k < 8; ++k) {
-    Deviation deviation;
-    for (std::size_t v = 0; v < n; ++v) {
-      const double t = tolerances.of_variable[v];
-      const double one = t * (k < 4 ? random.sign() : random.uniform(-1, 1));
-      deviation.begin.push_back(one);
-      deviation.end.push_back(k % 2 ? t * random.uniform(-1, 1) : one);
-    }
-    tried.push_back(deviation);
-  }
-  std::vector<PairTruth> nearest = truth.pairs;
-  std::sort(nearest.begin(), nearest.end(), [](const auto& x, const auto& y) { return x.gap < y.gap; });
-  for (std::size_t k = 0; k < std::min<std::size_t>(3, nearest.size()); ++k) {
-    if (!nearest[k].hit) tried.push_back(worst(scene, tolerances, nearest[k]));
-  }
+  const std::vector<Deviation> tried = deviationsOf(scene, tolerances, truth, random);
   if (r.t_lower > 0) {
     bool hit = false;
     for (std::size_t k = 0; k < tried.size(); ++k) {
@@ -254,27 +288,66 @@ void lookAtCase(Case& c) {
       continue;
     }
     if (!tolerances.any()) continue;  // none is wanted
-    if (contact.q_witness.size() != static_cast<Eigen::Index>(n)) {
-      c.fault("witness", "of another size");
-      continue;
+    c.tally.count("witness beside the motion",
+                  lookAtWitness(scene, tolerances, contact.q_witness, contact.t_upper,
+                                answer.bodyOf(contact.body1.object), answer.bodyOf(contact.body2.object), c));
+  }
+}
+
+Tolerances times(Tolerances tolerances, double factor) {
+  for (double& one : tolerances.of_variable) one *= factor;
+  const auto scale = [&](Pad& pad) { pad.length *= factor, pad.angle *= factor; };
+  scale(tolerances.base);
+  std::for_each(tolerances.of_body.begin(), tolerances.of_body.end(), scale);
+  return tolerances;
+}
+
+/// The largest free factor is that of queries with tolerances that are multiplied by hand.
+void lookAtFactor(Case& c) {
+  Asked asked(c.id.seed);
+  asked.scene = makeScene(c.id.family, c.id.seed);
+  Scene& scene = asked.scene;
+  scene.every_pair = false;
+  Random random(Random::mix(0x1ef7, c.id.seed));
+  const Tolerances tolerances = drawTolerances(scene, random);
+  if (!tolerances.any()) return;
+  asked.question = prepare(scene);
+  fcl_artic::ArticulatedCollisionManager& manager = *asked.question.manager;
+  setTolerances(scene, tolerances, manager);
+  fcl_artic::ToleranceLeftRequest request;
+  static_cast<fcl_artic::Tolerances&>(request) = asked.question.request;
+  static_cast<fcl_artic::Scope&>(request) = asked.question.request;
+  request.most = random.logUniform(1, 1000);
+  const fcl_artic::ToleranceLeft left = manager.toleranceLeft(*asked.question.motion, request);
+  c.tally.count("none", left.upper == 0);
+  c.tally.count("a factor", left.lower > 0 && std::isfinite(left.upper));
+  c.tally.count("certain", left.certain && left.upper > 0);
+  if (!left.within_accuracy || left.lower > left.upper) {
+    c.fault("bracket", format("[%.17g, %.17g]", left.lower, left.upper));
+  }
+  if (left.certain && left.upper > 0) {
+    Answer bodies;
+    bodies.objects = asked.question.objects;
+    lookAtWitness(scene, times(tolerances, left.upper), left.q_witness, left.time, bodies.bodyOf(left.body1.object),
+                  bodies.bodyOf(left.body2.object), c);
+  }
+
+  const auto isFree = [&](double factor) {
+    manager.resetTolerances();
+    setTolerances(scene, times(tolerances, factor), manager);
+    const CertifiedResult result = ask(asked.question, asked.question.request).result;
+    return result.isFree();
+  };
+  for (const double factor : {left.lower, left.lower * random.unit(), left.lower * (1 - 1e-3 * random.unit())}) {
+    if (factor > 0 && !isFree(factor)) c.fault("by hand", format("not free with %.17g", factor));
+  }
+  if (std::isfinite(left.upper) && isFree(left.upper)) c.fault("by hand", format("free with %.17g", left.upper));
+  // No motion within the tolerances times `lower` touches.
+  if (left.lower > 0) {
+    const Tolerances largest = times(tolerances, left.lower);
+    for (const Deviation& deviation : deviationsOf(scene, largest, asked.truth(), random)) {
+      if (Oracle(deviate(scene, largest, deviation, random)).judge(false).hit) c.fault("missed", "a deviation touches");
     }
-    Scene real = scene;
-    const Kinematics kinematics(scene);
-    bool nominal = true;
-    for (std::size_t v = 0; v < n; ++v) {
-      const auto i = static_cast<Eigen::Index>(v);
-      const double q = scene.q0[v] + contact.t_upper * kinematics.deltaQ(static_cast<int>(v));
-      nominal = nominal && std::abs(contact.q_witness[i] - q) < 1e-12;
-      if (std::abs(contact.q_witness[i] - q) > tolerances.of_variable[v] + 1e-13 * (1 + std::abs(q))) {
-        c.fault("witness", format("variable %zu is off by %.17g", v, contact.q_witness[i] - q));
-      }
-      real.q0[v] = real.q1[v] = contact.q_witness[i];
-    }
-    real.shortest = false;
-    const Proximity near =
-        Oracle(real).at(answer.bodyOf(contact.body1.object), answer.bodyOf(contact.body2.object), 0, 0.5);
-    if (!near.touching && near.gap > 1e-9) c.fault("witness", format("the bodies are %.6g apart at it", near.gap));
-    c.tally.count("witness beside the motion", !nominal);
   }
 }
 
@@ -291,6 +364,19 @@ TEST(Tubes, NoMotionWithinThemTouchesBeforeItIsSaid) {
   EXPECT_GE(all.share("deviations that hit"), 0.05) << "no deviation tells";
   EXPECT_GE(all["witness beside the motion"], options.cases / 100);
   EXPECT_GE(all["reached"], options.cases / 10);
+}
+
+TEST(Tubes, TheLargestFreeFactorIsThatOfTolerancesMultipliedByHand) {
+  Options options;
+  options.cases = fromEnvironment("FCL_ARTIC_TUBE_CASES", 200);
+  options.seed = fromEnvironment("FCL_ARTIC_TUBE_SEED", 1);
+  Campaign campaign;
+  campaign.families = families();
+  campaign.number = Arms::inShares;
+  campaign.look = lookAtFactor;
+  const Tally all = runWithoutFaults(campaign, options).total;
+  EXPECT_GE(all.share("a factor"), 0.12);
+  EXPECT_GE(all.share("certain"), 0.04);
 }
 
 }  // namespace

@@ -1,15 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Many random tubes: those that are verified against samples, and as many forged ones.
-//   tube_campaign COUNT SEED SAMPLES
+//   tube_campaign COUNT SEED SAMPLES [FOLDER]
+// writes what is verified to FOLDER (which is there) as NUMBER.world and NUMBER.fac.
 #include <cstdlib>
+#include <fstream>
 
 #include "tubes.h"
 
 int main(int argc, char** argv) {
-  if (argc != 4) return 2;
+  if (argc != 4 && argc != 5) return 2;
   const int count = std::atoi(argv[1]), samples = std::atoi(argv[3]);
-  const auto c = verify::test::tubeCampaign(std::strtoull(argv[2], nullptr, 10), count, count, samples);
+  int number = 0;
+  bool written = true;
+  const auto write = [&](const std::string& end, const std::string& bytes) {
+    std::ofstream file(std::string(argv[4]) + "/" + std::to_string(number) + end, std::ios::binary);
+    file << bytes;
+    written = written && file.flush();
+  };
+  const auto keep = [&](const std::string& world, const std::string& record) {
+    if (argc < 5) return;
+    ++number;
+    write(".world", world);
+    write(".fac", record);
+  };
+  const auto c = verify::test::tubeCampaign(std::strtoull(argv[2], nullptr, 10), count, count, samples, keep);
   std::printf("%d verified, %d of them falsified by samples, %d not proven; %d forged, %d of them accepted\n",
               c.verified, c.falsified, c.refused, c.forged, c.accepted);
-  return c.falsified == 0 && c.accepted == 0 ? 0 : 1;
+  if (!written) std::printf("not all files could be written\n");
+  return c.falsified == 0 && c.accepted == 0 && written ? 0 : 1;
 }

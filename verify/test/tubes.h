@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdio>
+#include <functional>
 #include <map>
 
 #include "cases.h"
@@ -191,7 +192,9 @@ struct TubeCounts {
 /// Random tubes with proofs by samples. No sample of a verified one may be nearer than its margin. Then all
 /// tolerances grow until a sample shows the claim to be false: with the same proof, and one made for it, it is refused.
 /// @param verified, forged  ends when there are as many of both.
-inline TubeCounts tubeCampaign(std::uint64_t seed, int verified, int forged, int samples) {
+/// @param keep  is given the world and the record of each that is verified.
+inline TubeCounts tubeCampaign(std::uint64_t seed, int verified, int forged, int samples,
+                               const std::function<void(const std::string&, const std::string&)>& keep = {}) {
   Rng rng(seed);
   TubeCounts counts;
   Options options;
@@ -222,6 +225,7 @@ inline TubeCounts tubeCampaign(std::uint64_t seed, int verified, int forged, int
       continue;
     }
     ++counts.verified;
+    if (keep) keep(c.world_text + lines.write(1), record(claim, nodes));
     if (tubeIsFalse(rng, world, motion, samples)) ++counts.falsified;
     // The least factor of a few that a sample shows to be too large.
     for (double factor = 1.25; factor < 1e4; factor *= 1.25) {

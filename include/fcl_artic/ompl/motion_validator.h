@@ -113,7 +113,8 @@ class FCL_ARTIC_EXPORT JointMapping {
 /// until they have separated.
 ///
 /// Margins are the pairs' own if they have any (ArticulatedCollisionManager::setMargin()), else the request's;
-/// CertifiedRequest::added_margin is added to either, and so is the room that states are given.
+/// CertifiedRequest::added_margin is added to either, and so is the room that states are given. With tolerances
+/// (ArticulatedCollisionManager::setJointTolerances()) a valid motion or state is one of which all of the tube is free.
 class FCL_ARTIC_EXPORT ContinuousMotionValidator : public ::ompl::base::MotionValidator {
  public:
   /// Creates a validator for a space information.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -78,7 +79,33 @@ bool mayTouch(const AttachedBody& body, const std::string& other) {
   return body.getTouchLinks().count(other) != 0;
 }
 
+/// A tolerance of one joint, given as rad or m, whatever its variable is.
+fcl_artic::JointTolerance toleranceOf(const KinematicTree& tree, const std::string& name, double value) {
+  const fcl_artic::JointId joint = tree.findJoint(name);
+  if (joint < 0)
+    throw std::invalid_argument("joint_tolerances: robot '" + tree.name() + "' has no joint '" + name + "'");
+  switch (tree.joint(joint).type) {
+    case JointType::prismatic:
+      return {0, value};
+    case JointType::fixed:  // which the manager refuses
+    case JointType::revolute:
+    case JointType::continuous:
+      return {value, 0};
+    case JointType::planar:
+    case JointType::spherical:
+    case JointType::floating:
+      break;
+  }
+  throw std::invalid_argument("joint_tolerances: joint '" + name +
+                              "' has several variables: joint_tolerance_angle and joint_tolerance_length count for it");
+}
+
 }  // namespace
+
+bool CellTolerances::any() const {
+  const auto isAbove = [](const auto& entry) { return entry.second > 0; };
+  return joints.any() || base.any() || objects > 0 || std::any_of(own.begin(), own.end(), isAbove);
+}
 
 Cell::Cell(moveit::core::RobotModelConstPtr model) : model_(std::move(model)) {
   if (!model_) throw std::invalid_argument("the robot model is null");
@@ -90,6 +117,7 @@ void Cell::readRobot() {
   manager_ = std::make_shared<fcl_artic::ArticulatedCollisionManager>(robot_.tree);
   registered_.clear();
   body_margins_.clear();
+  tolerances_text_.clear();
   ++robots_read_;
   for (const LinkModel* link : model_->getLinkModelsWithCollisionGeometry()) {
     if (apart_.count(link->getName())) continue;
@@ -297,6 +325,27 @@ void Cell::setMargins(const std::vector<Body>& bodies) {
   body_margins_ = std::move(margins);
 }
 
+/// Tolerances of objects go with these, and all with the manager: they are set anew each time.
+void Cell::setTolerances(const std::vector<Body>& bodies, const CellTolerances& tolerances) {
+  if (tolerances_text_.empty() && !tolerances.any()) return;
+  manager_->resetTolerances();
+  manager_->setJointTolerances(tolerances.joints);
+  for (const auto& [name, value] : tolerances.own) {
+    manager_->setJointTolerance(name, toleranceOf(*robot_.tree, name, value));
+  }
+  manager_->setBaseTolerance(tolerances.base);
+  tolerances_text_ = manager_->describeTolerances();
+  if (tolerances.objects == 0) return;
+  fcl_artic::PoseTolerance of_object;
+  of_object.length = tolerances.objects;
+  for (const Body& body : bodies) {
+    if (body.moveit.kind == BodyName::object) manager_->setObjectTolerance(body.name, of_object);
+  }
+  std::ostringstream objects;
+  objects << (tolerances_text_.empty() ? "" : ", ") << "objects " << 1000 * tolerances.objects << " mm";
+  tolerances_text_ += objects.str();
+}
+
 /// A pair that is wanted and not checked would go into `free` unseen.
 void Cell::requireChecked() const {
   std::set<std::pair<std::string, std::string>> checked;
@@ -308,7 +357,7 @@ void Cell::requireChecked() const {
 }
 
 void Cell::update(const CollisionEnv& env, const AllowedCollisionMatrix& acm, const moveit::core::RobotState& state,
-                  const JointModelGroup* group) {
+                  const JointModelGroup* group, const CellTolerances& tolerances) {
   if (env.getRobotModel() != model_ || state.getRobotModel() != model_) {
     throw std::invalid_argument("scene or trajectory are of another robot model than '" + model_->getName() + "'");
   }
@@ -352,6 +401,7 @@ void Cell::update(const CollisionEnv& env, const AllowedCollisionMatrix& acm, co
   registerBodies(all);
   setPairs(all, acm);
   setMargins(all);
+  setTolerances(all, tolerances);
   manager_->setup();
   requireChecked();
 

@@ -83,12 +83,14 @@ void tell(std::ostream& out, const Verdict& verdict, const Verdict::Contact& con
   out << contact.body1 << " and " << contact.body2;
   if (contact.padding + verdict.margin == 0) {
     out << (contact.certain ? " touch" : " come so near that contact can't be excluded");
+    if (!verdict.tolerances.empty()) out << " within the tolerances (" << verdict.tolerances << ')';
     return;
   }
   out << (contact.certain ? " come nearer than " : " come so near that it can't be excluded that they are nearer than ")
       << contact.padding + verdict.margin << " m";
   if (contact.padding > 0) out << " (padding " << contact.padding << " m";
   if (verdict.margin > 0) out << (contact.padding > 0 ? ", margin " : " (margin ") << verdict.margin << " m";
+  if (!verdict.tolerances.empty()) out << "; tolerances: " << verdict.tolerances;
   out << ')';
 }
 
@@ -108,6 +110,7 @@ std::string messageOf(const Verdict& verdict, const std::string& frame) {
     case Status::free:
       out << "free: proven for " << verdict.pairs << " pairs of bodies until t = " << verdict.t_lower << unit << " ("
           << toString(verdict.interpolation) << " between " << verdict.waypoints << " waypoints)";
+      if (!verdict.tolerances.empty()) out << ", for every path within " << verdict.tolerances;
       if (verdict.pairs == 0) out << "; no pair of bodies was to be checked";
       break;
     case Status::contact: {
@@ -208,11 +211,13 @@ Verdict answer(const Cell& cell, const robot_trajectory::RobotTrajectory& trajec
   verdict.notes = motion.notes;
   for (std::string& note : cell.manager().notes()) verdict.notes.push_back(std::move(note));
   verdict.margin = options.margin;
+  verdict.tolerances = cell.tolerances();
   if (const fcl_artic::CertifiedContact* first = result.first()) {
     verdict.waypoint = motion.waypointBefore(result.t_lower);
     verdict.contacts.push_back(contactOf(cell, *first, result.t_lower, result.certain));
     const fcl_artic::KinematicTree& tree = *cell.robot().tree;
-    const Eigen::VectorXd q = motion.trajectory.configuration(result.t_lower);
+    const bool witness = first->q_witness.size() > 0;
+    const Eigen::VectorXd q = witness ? first->q_witness : motion.trajectory.configuration(result.t_lower);
     for (int v = 0; v < tree.dof(); ++v) {
       const std::string& joint = tree.joint(tree.variableJoint(v)).name;
       if (!movesWith(trajectory.getGroup(), *trajectory.getRobotModel()->getJointModel(joint))) continue;
@@ -228,6 +233,12 @@ Verdict answer(const Cell& cell, const robot_trajectory::RobotTrajectory& trajec
 
 void CertifierOptions::check() const {
   requireDistance("the margin", margin, " m");
+  requireDistance("joint_tolerance_angle", tolerances.joints.angle, " rad");
+  requireDistance("joint_tolerance_length", tolerances.joints.length, " m");
+  for (const auto& [joint, value] : tolerances.own) requireDistance(("joint_tolerances: " + joint).c_str(), value, "");
+  requireDistance("base_tolerance_length", tolerances.base.length, " m");
+  requireDistance("base_tolerance_angle", tolerances.base.angle, " rad");
+  requireDistance("object_tolerance", tolerances.objects, " m");
   requireDistance("the mimic tolerance", motion.mimic_tolerance, "");
   requireDistance("the time limit", time_limit, " s");
   requireDistance("the blend", motion.blend, " s");
@@ -254,7 +265,8 @@ Verdict Certifier::certify(const collision_detection::CollisionEnv& env,
   requireSameBodies(trajectory);
   if (start) requireBodiesOf(*start, trajectory.getWayPoint(0));
   std::unique_ptr<Cell> cell = idleCell(trajectory.getRobotModel());
-  cell->update(env, acm, trajectory.getWayPoint(0), trajectory.getGroup());  // if this throws, the cell goes
+  // If this throws, the cell goes.
+  cell->update(env, acm, trajectory.getWayPoint(0), trajectory.getGroup(), options.tolerances);
   try {
     Verdict verdict = answer(*cell, trajectory, options);
     giveBack(std::move(cell));

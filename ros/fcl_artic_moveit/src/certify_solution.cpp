@@ -5,7 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <locale>
+#include <map>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -49,6 +52,15 @@ class Parameters {
     declare("turns", rclcpp::ParameterValue("ask"),
             "steps of half a turn or more of joints that turn forever: ask, given, shortest");
     declare("margin", rclcpp::ParameterValue(0.0), "m that every pair has to keep beyond the padding", 0);
+    declare("joint_tolerance_angle", rclcpp::ParameterValue(0.0),
+            "rad by which each joint that turns may be off; free is every path within", 0);
+    declare("joint_tolerance_length", rclcpp::ParameterValue(0.0), "m by which each joint that slides may be off", 0);
+    declare("joint_tolerances", rclcpp::ParameterValue(std::vector<std::string>()),
+            "of single joints, in place of these: JOINT=VALUE, rad or m");
+    declare("base_tolerance_length", rclcpp::ParameterValue(0.0), "m by which the robot's base may be off", 0);
+    declare("base_tolerance_angle", rclcpp::ParameterValue(0.0),
+            "rad by which it may be turned about the origin of the model's frame", 0);
+    declare("object_tolerance", rclcpp::ParameterValue(0.0), "m by which each object of the world may be off", 0);
     declare("mimic_tolerance", rclcpp::ParameterValue(1e-3),
             "rad or m by which a mimic joint of the group may be off from where its master has it", 0);
     declare("budget", rclcpp::ParameterValue(std::int64_t{0}), "tests after which a plan is undecided; 0: no limit", 0);
@@ -91,6 +103,12 @@ class Parameters {
       out.certifier.motion.turns = turnsNamed(text("turns", changed));
       out.certifier.motion.blend = number("blend", changed);
       out.certifier.margin = number("margin", changed);
+      CellTolerances& tolerances = out.certifier.tolerances;
+      tolerances.joints = {number("joint_tolerance_angle", changed), number("joint_tolerance_length", changed)};
+      tolerances.own = toleranceByJoint(parameter("joint_tolerances", changed));
+      tolerances.base.length = number("base_tolerance_length", changed);
+      tolerances.base.angle = number("base_tolerance_angle", changed);
+      tolerances.objects = number("object_tolerance", changed);
       out.certifier.motion.mimic_tolerance = number("mimic_tolerance", changed);
       out.certifier.time_limit = number("time_limit", changed);
       out.certifier.check();
@@ -148,6 +166,28 @@ class Parameters {
     value = node_.get_parameter(full).get_parameter_value();
     node_.undeclare_parameter(full);
     node_.declare_parameter(full, value, descriptor, true);
+  }
+
+  /// @throws std::invalid_argument naming what is not JOINT=VALUE, or is a joint's second one.
+  static std::map<std::string, double> toleranceByJoint(const rclcpp::Parameter& given) {
+    std::map<std::string, double> out;
+    if (given.get_type() == rclcpp::ParameterType::PARAMETER_NOT_SET) return out;  // YAML's [] has no type
+    if (given.get_type() != rclcpp::ParameterType::PARAMETER_STRING_ARRAY) {
+      throw std::invalid_argument("joint_tolerances is " + given.value_to_string() + ", no list of JOINT=VALUE");
+    }
+    for (const std::string& one : given.as_string_array()) {
+      const std::size_t equals = one.rfind('=');
+      std::istringstream number(equals == std::string::npos ? "" : one.substr(equals + 1));
+      number.imbue(std::locale::classic());
+      double value = 0;
+      if (equals == 0 || !(number >> value) || !(number >> std::ws).eof()) {
+        throw std::invalid_argument("joint_tolerances: '" + one + "' is not JOINT=VALUE, with rad or m as a number");
+      }
+      if (!out.emplace(one.substr(0, equals), value).second) {
+        throw std::invalid_argument("joint_tolerances: '" + one + "' is a second one of this joint");
+      }
+    }
+    return out;
   }
 
   rclcpp::Parameter parameter(const std::string& name, const std::vector<rclcpp::Parameter>& changed) const {

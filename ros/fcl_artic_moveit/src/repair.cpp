@@ -51,7 +51,7 @@ Repair Certifier::repair(const collision_detection::CollisionEnv& env,
                          const CertifierOptions& options, const RepairOptions& how) const {
   options.check();
   std::unique_ptr<Cell> cell = idleCell(trajectory.getRobotModel());
-  cell->update(env, acm, trajectory.getWayPoint(0), trajectory.getGroup());
+  cell->update(env, acm, trajectory.getWayPoint(0), trajectory.getGroup(), options.tolerances);
   const RobotTree& robot = cell->robot();
   const Motion motion = toMotion(robot, trajectory, options.motion);
   std::vector<int> variables;

@@ -200,6 +200,51 @@ TEST_F(CertifySolution, ParametersAreSetWhileItRunsOrNotAtAll) {
   EXPECT_EQ(adapted().error_code.val, kSuccess) << "nothing was changed";
 }
 
+/// Arm and finger are 0.05 m apart, joined by a slide; the finger comes to the wall when the rail is at 0.5.
+TEST_F(CertifySolution, TolerancesCount) {
+  adapter->initialize(node, "ompl");
+  const auto set = [&](const char* name, const rclcpp::ParameterValue& value) {
+    return node->set_parameter(rclcpp::Parameter(std::string("ompl.certify_solution.") + name, value));
+  };
+  const auto own = [&](const std::vector<std::string>& all) {
+    return set("joint_tolerances", rclcpp::ParameterValue(all));
+  };
+  EXPECT_TRUE(set("joint_tolerance_length", rclcpp::ParameterValue(0.04)).successful);
+  EXPECT_EQ(adapted().error_code.val, kSuccess);
+  EXPECT_TRUE(set("joint_tolerance_length", rclcpp::ParameterValue(0.06)).successful);
+  const MotionPlanResponse refused = adapted();
+  EXPECT_EQ(refused.error_code.val, kInvalid);
+  expectContains(refused.error_code.message, "within the tolerances (joints 60 mm)");
+  EXPECT_TRUE(own({"reach=0.04"}).successful);
+  EXPECT_EQ(adapted().error_code.val, kSuccess) << "its own counts in place of that of all";
+  EXPECT_TRUE(own({}).successful);
+  EXPECT_TRUE(set("joint_tolerance_length", rclcpp::ParameterValue(0.0)).successful);
+  EXPECT_EQ(adapted().error_code.val, kSuccess) << "and none is left";
+
+  scene->getWorldNonConst()->addToObject("beside", std::make_shared<shapes::Box>(9, 0.1, 0.1),
+                                         Eigen::Isometry3d(Eigen::Translation3d(0, 0.2, 0)));
+  EXPECT_EQ(adapted().error_code.val, kSuccess) << "the cart passes 0.05 m beside it";
+  for (const char* name : {"base_tolerance_length", "object_tolerance"}) {
+    EXPECT_TRUE(set(name, rclcpp::ParameterValue(0.04)).successful);
+    EXPECT_EQ(adapted().error_code.val, kSuccess) << name;
+    EXPECT_TRUE(set(name, rclcpp::ParameterValue(0.06)).successful);
+    EXPECT_EQ(adapted().error_code.val, kInvalid) << name;
+    EXPECT_TRUE(set(name, rclcpp::ParameterValue(0.0)).successful);
+  }
+  EXPECT_TRUE(set("base_tolerance_angle", rclcpp::ParameterValue(0.1)).successful);
+  EXPECT_EQ(adapted().error_code.val, kInvalid);
+  EXPECT_TRUE(set("base_tolerance_angle", rclcpp::ParameterValue(0.0)).successful);
+  EXPECT_TRUE(set("joint_tolerance_angle", rclcpp::ParameterValue(0.2)).successful);
+  EXPECT_EQ(adapted().error_code.val, kInvalid) << "the arm may turn to the box";
+
+  EXPECT_FALSE(set("joint_tolerance_angle", rclcpp::ParameterValue(-1.0)).successful);
+  for (const char* wrong : {"reach", "=0.1", "reach=wide", "reach=0.1m", "reach=-1"})
+    EXPECT_FALSE(own({wrong}).successful);
+  EXPECT_FALSE(own({"reach=0.1", "reach=0.2"}).successful);
+  EXPECT_TRUE(own({"raech=0.1"}).successful) << "the robot comes with the plan";
+  expectContains(adapted().error_code.message, "has no joint 'raech'");
+}
+
 TEST_F(CertifySolution, MarkersGoAtEveryRefusal) {
   adapter->initialize(node, "ompl");
   addWall();

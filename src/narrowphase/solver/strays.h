@@ -27,17 +27,20 @@ class Strays : PartOfSolver {
   /// @param in_world  inWorld() of both, summed.
   double ofLinks(int link_pair, double in_world) const {
     if (!any()) return 0;
-    return min(problem().link_pairs[link_pair].stray, in_world);
+    // Set-up knows it for factor 1. A chord min(k d, 2) is at most max(k, 1) times min(d, 2).
+    return min(max(factor(), 1.0) * problem().link_pairs[link_pair].stray, in_world);
   }
   /// How far an obstacle strays by itself, over [0, 1].
   double ofObstacle(int body_number) const { return any() ? ofBody(body(body_number), 1) : 0; }
   /// No obstacle's is larger.
   double largest() const {
     if (!any()) return 0;
-    return problem().largest_stray + wayOf(problem().largest_speed, problem().earliest_since, 1);
+    return factor() * problem().largest_stray + wayOf(problem().largest_speed, problem().earliest_since, 1);
   }
 
  private:
+  /// Times which all tolerances count: lengths and angles are multiplied where they are used, before chords are made.
+  double factor() const { return query().tube.factor; }
   /// A segment grown by a ball: it holds a body.
   struct Outline {
     Vec3 end[2];
@@ -99,13 +102,14 @@ class Strays : PartOfSolver {
 
 inline double Strays::strayOf(const engine::SweepStep& step) const {
   // The chord of an angle is no longer than the angle, and no longer than 2.
-  return turns(step.kind) ? min(step.stray, 2.0) : step.stray;
+  const double stray = factor() * step.stray;
+  return turns(step.kind) ? min(stray, 2.0) : stray;
 }
 
 /// Rounding of the clock and of a product (NUMERICS, "Tubes").
 inline double Strays::wayOf(double speed, double since, double t) const {
   if (!(speed > 0)) return 0;
-  const engine::Clock& clock = query().clock;
+  const engine::Clock& clock = query().tube.clock;
   const double sizes = (clock.begin < 0 ? -clock.begin : clock.begin) + (clock.end < 0 ? -clock.end : clock.end);
   const double now = t >= 1 ? clock.end : clock.begin + t * (clock.end - clock.begin);
   return speed * max(0.0, now - since + 4 * kUlp * (sizes + (since < 0 ? -since : since))) * (1 + 2 * kUlp);
@@ -226,7 +230,7 @@ inline void Strays::direct(const Chain& chain, const Placement& inverse_a, const
   double angles = others.angle, strays = 0, slides = 0;
   for (int k = 0; k < way_.size(); ++k) {
     const engine::SweepStep& step = view.steps[way_[k]];
-    const double s = step.stray;
+    const double s = factor() * step.stray;
     const FrameLanes& frame = frames_.of(chain.sweep, way_[k]);
     TubeAxis& axis = axes_.grow();
     axis.stray = s;
@@ -262,7 +266,7 @@ inline void Strays::direct(const Chain& chain, const Placement& inverse_a, const
 inline double Strays::ofBase(const Body& link) {
   const engine::BaseStray& base = problem().base;
   if (!base.any()) return 0;
-  double stray = base.length;
+  double stray = factor() * base.length;
   if (base.angle > 0) {
     const Outline outline = outlineOf(link, link.placement);
     const Vec3Lanes pivot = spread(Vec3(base.pivot));
@@ -283,7 +287,7 @@ inline double Strays::ofBase(const Body& link) {
       ulps += bounds.ulps;
     }
     const double far = maxLane(sqrt(square)) + outline.radius + way + kUlp * (ulps + kPoseUlps) * sizes;
-    stray += min(base.angle, 2.0) * far;
+    stray += min(factor() * base.angle, 2.0) * far;
   }
   return stray * (1 + 16 * kUlp);
 }
@@ -308,7 +312,7 @@ inline void Strays::between(PairId pair, double pose_error, Tube& tube) {
   const double poses = (ofBody(A, until) + ofBody(B, until) + (base ? ofBase(B) : 0)) * (1 + 8 * kUlp);
   tube.middle = least.middle + Lanes(poses);
   tube.over = (maxLane(least.over) + poses) * (1 + 2 * kUlp);
-  direct(chain, *parts.inverse_a, {poses, base ? problem().base.angle : 0}, tube);
+  direct(chain, *parts.inverse_a, {poses, base ? factor() * problem().base.angle : 0}, tube);
 }
 
 inline void Strays::begin() {

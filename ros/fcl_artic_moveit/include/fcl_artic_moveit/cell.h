@@ -21,6 +21,17 @@ struct BodyName {
   std::string id;                                      ///< its name in MoveIt
 };
 
+/// How far the real robot and its scene may be from MoveIt's.
+struct CellTolerances {
+  fcl_artic::JointTolerance joints;   ///< of all joints of the model that turn, rad, and that slide, m
+  std::map<std::string, double> own;  ///< of single joints, in place of that: rad, or m for one that slides
+  fcl_artic::PoseTolerance base;      ///< of the robot, about the origin of the model's frame
+  double objects = 0;                 ///< m, of each object of the world, octomap included
+
+  /// Whether one of them is above 0.
+  bool any() const;
+};
+
 /// A MoveIt robot and what surrounds it, as a manager.
 ///
 /// The cell checks what MoveIt checks (PlanningScene::checkCollision()). `padding` is the distance that a link, and
@@ -49,11 +60,15 @@ class Cell {
   /// @param acm    pairs that may touch.
   /// @param state  of which the attached bodies count.
   /// @param group  whose joints move; null: all.
+  /// @param tolerances  of the manager's answers from now on. They add no pair: two bodies of which neither moves with
+  ///   the group stay unchecked.
   /// @throws std::invalid_argument naming link or object: another model, a link's scale that is not 1, a padding that
   ///   is negative or not finite, a shape that toFcl() refuses. Also for an unbounded shape (plane) on a link or in a
-  ///   hand, and for geometry or a pose that ArticulatedCollisionManager refuses.
+  ///   hand, and for geometry or a pose that ArticulatedCollisionManager refuses. Also for a tolerance of a joint that
+  ///   is unknown, mimics another, or has several variables.
   void update(const collision_detection::CollisionEnv& env, const collision_detection::AllowedCollisionMatrix& acm,
-              const moveit::core::RobotState& state, const moveit::core::JointModelGroup* group);
+              const moveit::core::RobotState& state, const moveit::core::JointModelGroup* group,
+              const CellTolerances& tolerances = {});
 
   /// The model's tree, as of the last update().
   const RobotTree& robot() const { return robot_; }
@@ -66,6 +81,8 @@ class Cell {
   const BodyName& nameOf(const fcl_artic::BodyRef& body) const { return names_.at(body.name).first; }
   /// The distance that two bodies of an answer have to keep because of the links' padding, m.
   double paddingBetween(const fcl_artic::BodyRef& a, const fcl_artic::BodyRef& b) const;
+  /// The tolerances of the last update(), for people; empty: none.
+  const std::string& tolerances() const { return tolerances_text_; }
   /// How often the robot was read: 1 as long as nothing asked for another tree.
   int robotsRead() const { return robots_read_; }
 
@@ -100,6 +117,7 @@ class Cell {
   void registerBodies(const std::vector<Body>& bodies);
   void setPairs(const std::vector<Body>& bodies, const collision_detection::AllowedCollisionMatrix& acm);
   void setMargins(const std::vector<Body>& bodies);
+  void setTolerances(const std::vector<Body>& bodies, const CellTolerances& tolerances);
   void requireChecked() const;
   std::string unused(const std::string& name);
   std::shared_ptr<fcl::CollisionGeometryd> geometryOf(const shapes::ShapeConstPtr& shape, const std::string& owner);
@@ -116,6 +134,7 @@ class Cell {
   std::map<std::string, Registered> registered_;
   std::map<const shapes::Shape*, std::pair<shapes::ShapeConstPtr, std::shared_ptr<fcl::CollisionGeometryd>>> geometry_;
   std::map<std::string, double> body_margins_;
+  std::string tolerances_text_;
   /// Pairs of carried bodies that have to be checked. (The library judges pairs that no joint moves.)
   std::set<std::pair<std::string, std::string>> wanted_;
 };

@@ -26,14 +26,16 @@ struct CertifierOptions {
   MotionOptions motion;
   /// Distance that every checked pair has to keep, m, beyond the links' padding; finite, at least 0.
   double margin = 0;
+  /// How far robot and scene may be from MoveIt's: `free` holds for every path within these tolerances.
+  CellTolerances tolerances;
   /// Number of tests after which the answer is `undecided`; 0: no limit.
   std::uint64_t budget = 0;
   /// Time after which the answer is `undecided`, s; 0: no limit. The time to read a robot when it is first seen does
   /// not count.
   double time_limit = 0;
 
-  /// @throws std::invalid_argument naming the value: margin, mimic tolerance, blend or time limit negative or not
-  ///   finite; `blends` without a blend; Turns::shortest beside an interpolation that says itself which way round.
+  /// @throws std::invalid_argument naming the value: margin, a tolerance, blend or time limit negative or not finite;
+  ///   `blends` without a blend; Turns::shortest beside an interpolation that says itself which way round.
   void check() const;
 };
 
@@ -55,9 +57,11 @@ struct Verdict : fcl_artic::Bracket {
   /// first. Empty where there is none. Only before the first one's time it is proven that nothing touches.
   std::vector<Contact> contacts;
   std::size_t waypoint = 0;  ///< that is at or before the first contact
-  /// Values of the group's joint variables at the first contact, with their names, rad or m.
+  /// Values of the group's joint variables at the first contact, with their names, rad or m. With tolerances, and if it
+  /// is certain, those within them at which the two bodies touch.
   std::vector<std::pair<std::string, double>> joints;
   double margin = 0;               ///< m, CertifierOptions::margin
+  std::string tolerances;          ///< CertifierOptions::tolerances, for people; empty: none
   bool out_of_time = false;        ///< CertifierOptions::time_limit made it undecided
   std::vector<std::string> notes;  ///< what was accepted though unusual, one line each
   std::string message;             ///< verdict, contact and cure, for a log
