@@ -68,7 +68,7 @@ struct PlanMotion {
   std::vector<Eigen::VectorXd> waypoints;  ///< all variables of the tree, as the plan has them
   JointTrajectory trajectory;
   bool timed;
-  bool part;  ///< of Plan
+  bool part;                       ///< of Plan
   std::vector<std::string> notes;  ///< the plan's, and what was accepted though unusual
 
   /// The waypoint at or before time t: 0 to the last.
