@@ -128,6 +128,7 @@ void certify(const ArticulatedCollisionManager& manager, const CertifyOptions& o
   try {
     plan.motion = plans::toMotion(manager.tree(), plan.plan, options.motion);
     plan.notes = plan.motion->notes;
+    if (manager.hasSpeeds()) plans::requireClock(*plan.motion);
     plans::requireCarried(manager.tree(), plan.plan, options.attached, "--attach says what that is");
     const auto begin = Clock::now();
     manager.continuousCollide(plan.motion->trajectory, options.request, plan.result);

@@ -258,6 +258,15 @@ int runCertify(CertifyVerb& o) {
                         {"--auto-srdf", &o.world.auto_srdf}},
                        inputs);
   World world(o.world);
+  if (!world.tolerances().speeds.empty()) {
+    if (!o.certificate.empty()) refuseCertificatesOfSpeeds();
+    if (o.mend) {
+      throw std::invalid_argument(fmt::format(
+          "--speed: a detour is made of motions that are asked one by one, as if '{}' had just been seen at "
+          "its place: mend without --speed, then certify the mended plan with its times",
+          world.tolerances().speeds.front().object));
+    }
+  }
   world.open(o.certify.request);
   const KinematicTree& tree = *world.robot.tree;
   o.certify.motion.interpolation = o.interpolation.kind();
@@ -338,6 +347,7 @@ void addCertify(CLI::App& program, int& exit_status) {
       "Many edges or trajectories in many scenes: fcl_artic certify --edges FILE.h5; certify --merge --help says "
       "more.");
   certify->add_option("PLAN", o.plans, "Files and folders of plans")->required()->group("Plans")->type_name("PLAN...");
+  o.world.timed = true;  // certify() refuses plans without times
   addWorldOptions(*certify, o.world, "--robot,--urdf");
 
   certify->add_option("--format", o.format, "What the files are, whatever their endings")

@@ -82,6 +82,25 @@ void print(const Report& report, bool json) {
   }
 }
 
+/// Objects that move by themselves move for as long as the motion takes.
+void requireTimeForSpeeds(const CheckVerb& options, const ToleranceSettings& tolerances) {
+  if (tolerances.speeds.empty()) return;
+  const std::string& object = tolerances.speeds.front().object;
+  if (!options.lines.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "--speed: each line of --lines is asked by itself, as if '{}' had just been seen at its place: ask about whole "
+        "plans with their times (--trajectory, or certify)",
+        object));
+  }
+  if (options.trajectory.empty()) {
+    throw std::invalid_argument(fmt::format(
+        "--speed: nothing says how long the motion from --from to --to takes, and so how far '{}' gets: give waypoints "
+        "with times (--trajectory)",
+        object));
+  }
+  if (!options.certificate.empty()) refuseCertificatesOfSpeeds();
+}
+
 int runCheck(CheckVerb& options) {
   if (!options.views.image.empty()) render::requirePictures();
   (void)makeCuller(options.visibility.executor);  // refused before files are read
@@ -98,6 +117,7 @@ int runCheck(CheckVerb& options) {
                         {"--auto-srdf", &options.world.auto_srdf}},
                        inputs);
   World world(options.world);
+  requireTimeForSpeeds(options, world.tolerances());
   world.open(options.request);
   const KinematicTree& tree = *world.robot.tree;
   // One of the two.
@@ -124,6 +144,7 @@ int runCheck(CheckVerb& options) {
     noteLimits(motion->configuration(1), "--to");
   } else {
     plans::PlanMotion plan = readTrajectory(tree, options.trajectory, of_motion);
+    if (!world.tolerances().speeds.empty()) plans::requireClock(plan);
     trajectory = std::move(plan.trajectory);
     foreign = plan.foreign;
     motion_notes.push_back(
@@ -283,6 +304,7 @@ void addCheck(CLI::App& program, int& exit_status) {
       "of all answers: 2 before 1 before 3.\n"
       "If an answer surprises you: --dump writes the query as one file, which a report of it should have.");
 
+  o.world.timed = true;  // requireTimeForSpeeds() looks closer
   addWorldOptions(*check, o.world);
 
   CLI::Option* from = check->add_option("--from", o.from, "Configuration at t = 0")->group("Motion")->type_name("Q");

@@ -28,11 +28,18 @@ struct Quantity {
   throw std::invalid_argument(fmt::format("{}: '{}' {}", where, text, why));
 }
 
-Quantity readQuantity(const std::string& where, const std::string& text) {
+/// A number of at least 0, and what stands after it.
+std::pair<double, std::string> readNumber(const std::string& where, const std::string& text) {
   double value = 0;
   const char* const end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
-  const std::string unit(stop, end);
+  if (error != std::errc() || !std::isfinite(value)) refuse(where, text, "does not begin with a number");
+  if (value < 0) refuse(where, text, "is below 0");
+  return {value, std::string(stop, end)};
+}
+
+Quantity readQuantity(const std::string& where, const std::string& text) {
+  const auto [value, unit] = readNumber(where, text);
   struct Unit {
     const char* name;
     bool angle;
@@ -40,8 +47,6 @@ Quantity readQuantity(const std::string& where, const std::string& text) {
   };
   static constexpr Unit kUnits[] = {
       {"deg", true, kRadiansPerDegree}, {"rad", true, 1}, {"m", false, 1}, {"cm", false, 0.01}, {"mm", false, 0.001}};
-  if (error != std::errc() || !std::isfinite(value)) refuse(where, text, "does not begin with a number");
-  if (value < 0) refuse(where, text, "is below 0");
   for (const Unit& known : kUnits) {
     if (unit == known.name) return {known.angle, value * known.size};
   }
@@ -74,9 +79,23 @@ ToleranceSettings::OfObject readPose(const std::string& where, const std::string
   return of;
 }
 
+/// The object that `text` names before its last '='; the rest is `value`.
+template <class Settings>
+std::string readObject(const std::string& where, const std::string& text, const char* form, const Settings& before,
+                       std::string& value) {
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos || equals == 0) refuse(where, text, fmt::format("is not {}", form));
+  const std::string object = text.substr(0, equals);
+  for (const auto& other : before) {
+    if (other.object == object) refuse(where, text, "is a second one of this object");
+  }
+  value = text.substr(equals + 1);
+  return object;
+}
+
 }  // namespace
 
-void addToleranceOptions(CLI::App& verb, ToleranceOptions& o) {
+void addToleranceOptions(CLI::App& verb, ToleranceOptions& o, bool timed) {
   verb.add_option("--joint-tolerance", o.joints,
                   "How far joints may be from the motion: 0.3deg for all that turn, 1mm for all that slide, "
                   "JOINT=0.5deg,JOINT2=1mm for some; may be repeated. Free is every path within")
@@ -93,6 +112,12 @@ void addToleranceOptions(CLI::App& verb, ToleranceOptions& o) {
       ->allow_extra_args(false)
       ->group(kGroup)
       ->type_name("OBJECT=LENGTH,ANGLE");
+  verb.add_option("--speed", o.speeds,
+                  "How fast an obstacle or a carried object may move by itself, from the plan's first waypoint on: "
+                  "person=1.6, in m/s; may be repeated. Free is then wherever it goes. Plans need times")
+      ->allow_extra_args(false)
+      ->group(timed ? kGroup : "")
+      ->type_name("OBJECT=SPEED");
 }
 
 ToleranceSettings readToleranceSettings(const ToleranceOptions& o) {
@@ -117,13 +142,17 @@ ToleranceSettings readToleranceSettings(const ToleranceOptions& o) {
   if (!o.base.empty()) out.base = readPose("--base-tolerance", "", o.base);
   for (const std::string& text : o.objects) {
     const std::string where = "--tolerance";
-    const std::size_t equals = text.rfind('=');
-    if (equals == std::string::npos || equals == 0) refuse(where, text, "is not OBJECT=LENGTH,ANGLE");
-    const std::string object = text.substr(0, equals);
-    for (const ToleranceSettings::OfObject& before : out.objects) {
-      if (before.object == object) refuse(where, text, "is a second one of this object");
-    }
-    out.objects.push_back(readPose(where, object, text.substr(equals + 1)));
+    std::string value;
+    const std::string object = readObject(where, text, "OBJECT=LENGTH,ANGLE", out.objects, value);
+    out.objects.push_back(readPose(where, object, value));
+  }
+  for (const std::string& text : o.speeds) {
+    const std::string where = "--speed";
+    std::string value;
+    const std::string object = readObject(where, text, "OBJECT=SPEED", out.speeds, value);
+    const auto [speed, unit] = readNumber(where, value);
+    if (!unit.empty() && unit != "m/s") refuse(where, value, "has another unit: write it in m/s, as 1.6");
+    out.speeds.push_back({where, object, speed});
   }
   return out;
 }
@@ -155,13 +184,24 @@ void ToleranceSettings::apply(const Scene& scene, ArticulatedCollisionManager& m
     set(of.where, [&] { manager.setJointTolerance(of.joint, own); });
   }
   if (base) manager.setBaseTolerance({base->length, base->angle, Eigen::Vector3d::Zero()});
-  for (const OfObject& of : objects) {
+  const auto setAll = [&](const auto& of, const auto& change) {
     std::vector<std::string> names = scene.namesOf(of.object);
     if (names.empty()) names.push_back(of.object);
-    for (const std::string& name : names) {
-      set(of.where, [&] { manager.setObjectTolerance(name, {of.length, of.angle, Eigen::Vector3d::Zero()}); });
-    }
+    for (const std::string& name : names) set(of.where, [&] { change(name); });
+  };
+  for (const OfObject& of : objects) {
+    setAll(of, [&](const std::string& name) {
+      manager.setObjectTolerance(name, {of.length, of.angle, Eigen::Vector3d::Zero()});
+    });
   }
+  for (const OfSpeed& of : speeds) {
+    setAll(of, [&](const std::string& name) { manager.setObjectSpeed(name, {of.speed, 0}); });
+  }
+}
+
+void refuseCertificatesOfSpeeds() {
+  throw std::invalid_argument(
+      "--speed: a certificate does not state how fast objects move by themselves: leave --certificate out");
 }
 
 std::string ToleranceSettings::text() const {
@@ -172,6 +212,7 @@ std::string ToleranceSettings::text() const {
   if (base) lines.push_back(fmt::format("base {:a} {:a}", base->length, base->angle));
   for (const OfObject& of : objects)
     lines.push_back(fmt::format("object {}\n{:a} {:a}", of.object, of.length, of.angle));
+  for (const OfSpeed& of : speeds) lines.push_back(fmt::format("speed {}\n{:a}", of.object, of.speed));
   std::sort(lines.begin(), lines.end());
   std::string out;
   for (const std::string& line : lines) out += line + "\n";

@@ -95,7 +95,7 @@ void addWorldOptions(CLI::App& verb, WorldOptions& o, const std::string& robot_n
       ->type_name("NAME");
   addAttachOption(verb, o.robot);
   addPairOptions(verb, o.pairs);
-  addToleranceOptions(verb, o.tolerances);
+  addToleranceOptions(verb, o.tolerances, o.timed);
   verb.add_option("--proof-work", o.proof_work,
                   "Tests at most for the proof that one allowed pair of links never touches, as --work of srdf")
       ->group("Robot and scene")
@@ -139,6 +139,7 @@ std::string shellArguments(const WorldOptions& o) {
   addAll("--joint-tolerance", o.tolerances.joints);
   add("--base-tolerance", o.tolerances.base);
   addAll("--tolerance", o.tolerances.objects);
+  addAll("--speed", o.tolerances.speeds);
   if (o.proof_work != WorldOptions().proof_work) add("--proof-work", fmt::format("{}", o.proof_work));
   return text;
 }
@@ -179,7 +180,14 @@ World::World(const WorldOptions& options)
     : options_(options),
       pairs_(readPairSettings(options.pairs)),
       tolerances_(readToleranceSettings(options.tolerances)),
-      solids_(options.solids.begin(), options.solids.end()) {}
+      solids_(options.solids.begin(), options.solids.end()) {
+  if (tolerances_.speeds.empty() || options.timed) return;
+  throw std::invalid_argument(
+      fmt::format("--speed: here each motion is asked by itself, as if '{}' had just been seen at its place, so free "
+                  "would not hold "
+                  "for what comes after it: ask about whole plans with their times, by certify or check --trajectory",
+                  tolerances_.speeds.front().object));
+}
 
 void World::readRobot() {
   robot = app::readRobot(options_.robot);

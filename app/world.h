@@ -29,6 +29,9 @@ struct WorldOptions {
   bool unknown_cells = false;
   double scale = 1;         ///< of the scenes
   double point_radius = 0;  ///< of point clouds, m; 0: none is given
+  /// The verb asks about whole plans with their times. Else objects must have no speed: where each motion is asked by
+  /// itself, they would begin at their places again, and `free` would not hold.
+  bool timed = false;
 };
 
 /// Adds the whole group "Robot and scene": the robot's options, --auto-srdf, --scene, --scale, --collada-up-axis,
@@ -54,7 +57,8 @@ SceneOptions sceneOptions(const WorldOptions& options);
 class World {
  public:
   /// @param options  must outlive this object.
-  /// @throws as readPairSettings() and readToleranceSettings().
+  /// @throws as readPairSettings() and readToleranceSettings(); std::invalid_argument for a speed without
+  ///   WorldOptions::timed.
   explicit World(const WorldOptions& options);
 
   /// Reads the robot, proves pairs of links if the request's queries use that, and reads the obstacles.

@@ -102,7 +102,7 @@ Distances measureDistances(const ArticulatedCollisionManager& manager, const Rob
   out.most = options.most;
   std::vector<const fcl::ContinuousCollisionObjectd*> moving;
   manager.getObjects(moving);
-  if (!moving.empty()) {
+  if (!moving.empty() || manager.hasSpeeds()) {  // the parts of the motion are asked about by themselves
     out.missing = "obstacles move by themselves";
     return out;
   }

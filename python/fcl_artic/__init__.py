@@ -18,6 +18,7 @@ Lengths are in metres, angles in radians, poses are 4x4 matrices (or a position 
 from ._enums import (
     ContactMode,
     FeatureKind,
+    GuardReason,
     JointType,
     LinkPairKind,
     Method,
@@ -37,6 +38,7 @@ from ._fcl_artic import (
     Clearance,
     Contact,
     Geometry,
+    Guard,
     Joint,
     JointMotion,
     JointTrajectory,
@@ -45,6 +47,7 @@ from ._fcl_artic import (
     LinkPairFinding,
     LinkPairProofs,
     LinkPairReport,
+    LiveScene,
     Mimic,
     Motion,
     Obstacle,
@@ -89,6 +92,7 @@ from ._fcl_artic import (
     triangle,
     unit_notes,
 )
+from ._guard import AheadAnswer, GuardAnswer, Separation
 from ._picture import Picture
 from ._poses import pose
 from ._report import Report
@@ -110,6 +114,7 @@ _pickle_by_protocol_2()
 del _pickle_by_protocol_2
 
 __all__ = [
+    "AheadAnswer",
     "Answers",
     "Bodies",
     "BodiesResult",
@@ -121,6 +126,9 @@ __all__ = [
     "ContactMode",
     "FeatureKind",
     "Geometry",
+    "Guard",
+    "GuardAnswer",
+    "GuardReason",
     "Joint",
     "JointMotion",
     "JointTrajectory",
@@ -131,6 +139,7 @@ __all__ = [
     "LinkPairKind",
     "LinkPairProofs",
     "LinkPairReport",
+    "LiveScene",
     "Method",
     "Mimic",
     "Motion",
@@ -145,6 +154,7 @@ __all__ = [
     "Result",
     "Robot",
     "Scene",
+    "Separation",
     "Status",
     "ToleranceLeft",
     "ToolDeviation",

@@ -79,6 +79,19 @@ class FeatureKind(enum.Enum):
     VOLUME = "volume"
 
 
+class GuardReason(enum.Enum):
+    """Why a guard's answer is no larger."""
+
+    NONE = "none"
+    """Full speed."""
+    NEAR = "near"
+    """Two bodies may come too near."""
+    BUDGET = "budget"
+    """The work budget is spent."""
+    OLD_SCENE = "old_scene"
+    """The scene was seen too long ago, or after now."""
+
+
 class JointType(enum.Enum):
     """Kinds of joints, as in URDF."""
 

@@ -207,6 +207,12 @@ Answers checkMany(const World& world, py::handle q0, py::handle q1, int threads,
   Answers answers = claimNothing(n);
   Watch watch(std::move(request.progress));
   world.manager().ask([&](const ArticulatedCollisionManager& manager) {
+    if (manager.hasSpeeds()) {
+      throw std::invalid_argument(
+          "check_many(): an object moves by itself (set_object_speed()), and each motion is asked as if the object "
+          "were "
+          "at its place: ask check() about a whole trajectory with its times");
+    }
     answers.bodies = world.names();  // now that nothing changes
     Batch(world, from.rows(), to.rows(), request.request, answers, watch).run(manager, used);
   });

@@ -77,7 +77,7 @@ constexpr struct {
     {"World", "dof", "Number of joint variables."},
     {"World", "obstacles", "Names of obstacles that stand still."},
     {"World", "moving", "Names of obstacles that move by themselves."},
-    {"World", "tolerances", "Tolerances of joints, base and objects in one line; empty: none."},
+    {"World", "tolerances", "Tolerances of joints, base and objects, and speeds, in one line; empty: none."},
     {"World", "attached", "What links carry: the link's name by the object's."},
     {"World", "names", "Names of links, then of all else."},
     {"Body", "name", "Name of the link, obstacle or attached object."},

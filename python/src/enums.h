@@ -8,6 +8,7 @@
 #include <string>
 
 #include "errors.h"
+#include "fcl_artic/guard.h"
 #include "fcl_artic/kinematic_tree.h"
 #include "fcl_artic/link_pairs.h"
 #include "fcl_artic/request.h"
@@ -31,6 +32,7 @@ template <> inline const char* enumName<VisibilityExecutor>() { return "Visibili
 template <> inline const char* enumName<Method>() { return "Method"; }
 template <> inline const char* enumName<MotionEnclosure>() { return "MotionEnclosure"; }
 template <> inline const char* enumName<FeatureKind>() { return "FeatureKind"; }
+template <> inline const char* enumName<GuardReason>() { return "GuardReason"; }
 template <> inline const char* enumName<JointType>() { return "JointType"; }
 template <> inline const char* enumName<LinkPairKind>() { return "LinkPairKind"; }
 // clang-format on

@@ -48,7 +48,7 @@ py::tuple planState(const LoadedPlan& p) {
       treeOfRobot(p.tree),
       py::make_tuple(p.plan.name, p.plan.joints, p.plan.times, p.plan.positions, p.plan.velocities,
                      p.plan.accelerations, p.plan.state, carried, p.plan.has_degrees, p.plan.notes, p.plan.error,
-                     p.plan.joints_counted, p.plan.foreign, p.plan.other_angles, p.plan.other_units),
+                     p.plan.joints_counted, p.plan.foreign, p.plan.other_angles, p.plan.other_units, p.plan.part),
       py::make_tuple(static_cast<int>(o.interpolation), o.blend, static_cast<int>(o.turns), o.ignore_limits,
                      o.limit_tolerance, o.degrees, o.joints, o.state));
 }
@@ -75,6 +75,7 @@ LoadedPlan planOfState(const py::tuple& state) {
   read(given, i++, plan.foreign);
   read(given, i++, plan.other_angles);
   read(given, i++, plan.other_units);
+  read(given, i++, plan.part);
   for (const auto& [name, link] : carried) plan.carried.push_back({name, link});
   plans::MotionOptions options;
   options.interpolation = static_cast<plans::Interpolation>(py::cast<int>(how[0]));
@@ -132,7 +133,13 @@ CertifiedResult certify(const World& world, py::handle value, const py::kwargs& 
     if (body.carrier >= 0) attached.push_back({{}, {body.name}, body.carrier});
   }
   plans::requireCarried(*world.tree(), plan.plan, attached, "World.attach() says what that is");
-  return answer(world, motion.trajectory, readRequest(options));
+  std::string no_clock;
+  try {
+    plans::requireClock(motion);
+  } catch (const std::invalid_argument& why) {
+    no_clock = why.what();
+  }
+  return answer(world, motion.trajectory, readRequest(options), no_clock);
 }
 
 py::object arrayOfWaypoints(const LoadedPlan& plan) {

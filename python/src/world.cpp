@@ -291,7 +291,16 @@ void requireAnswerOf(const World& world, const Question& question, const Certifi
   }
 }
 
-CertifiedResult answer(const World& world, const Question& question, Request request) {
+void requireClock(const ArticulatedCollisionManager& manager, const Question& question, const std::string& no_clock) {
+  if (!manager.hasSpeeds()) return;
+  if (!no_clock.empty()) throw std::invalid_argument(no_clock);
+  if (std::holds_alternative<JointTrajectory>(question)) return;
+  throw std::invalid_argument(
+      "an object moves by itself (set_object_speed()), and nothing says how long this motion takes: ask about a "
+      "trajectory with its times, as JointTrajectory.linear(robot, [0, 2], [q0, q1])");
+}
+
+CertifiedResult answer(const World& world, const Question& question, Request request, const std::string& no_clock) {
   Watch watch(std::move(request.progress));
   const auto [begin, length] = timeOf(question);
   const struct {
@@ -301,6 +310,7 @@ CertifiedResult answer(const World& world, const Question& question, Request req
   request.request.progress = [&clock](double t) { return clock.watch->goOn((t - clock.begin) / clock.length); };
   CertifiedResult result;
   world.manager().ask([&](const ArticulatedCollisionManager& manager) {
+    requireClock(manager, question, no_clock);
     std::visit([&](const auto& motion) { manager.continuousCollide(motion, request.request, result); }, question);
   });
   watch.finish();
@@ -316,7 +326,11 @@ CertifiedResult check(const World& world, py::handle q0, py::handle q1, const py
 CertifiedResult checkTrajectory(const World& world, py::handle waypoints, py::handle times, py::handle velocities,
                                 py::handle accelerations, py::handle blend, bool unwrap, const py::kwargs& options) {
   return answer(world, trajectoryThrough(*world.tree(), waypoints, times, velocities, accelerations, blend, unwrap),
-                readRequest(options));
+                readRequest(options),
+                times.is_none()
+                    ? "an object moves by itself (set_object_speed()), and the waypoints have no times: give "
+                      "check_trajectory() times"
+                    : "");
 }
 
 bool isFree(const World& world, py::handle q0, py::handle q1, const py::kwargs& options) {
@@ -363,6 +377,7 @@ void dump(const World& world, py::handle path, py::handle q0, py::handle q1, con
   const Request request = readRequest(options);
   const Question question = questionOf(world, q0, q1);
   const std::string text = world.manager().ask([&](const ArticulatedCollisionManager& manager) {
+    requireClock(manager, question);
     return std::visit([&](const auto& motion) { return manager.writeQuery(motion, request.request); }, question);
   });
   writeFiles({{file, text}});
@@ -392,6 +407,7 @@ auto searchOn(const World& world, py::handle q0, py::handle q1, const py::kwargs
     return watch.goOn(upper > 0 && std::isfinite(upper) ? lower / upper : 0);
   };
   const auto found = world.manager().ask([&](const ArticulatedCollisionManager& manager) {
+    requireClock(manager, question);
     return std::visit([&](const auto& motion) { return search(manager, motion, request); }, question);
   });
   watch.finish();
@@ -576,9 +592,25 @@ void bindChanges(py::class_<World>& world) {
           py::arg("name"), py::arg("length") = 0.0, py::arg("angle") = 0.0, py::kw_only(),
           py::arg("pivot") = py::make_tuple(0, 0, 0))
       .def(
+          "set_object_speed",
+          [](World& w, const std::string& name, double speed, double since) {
+            const std::vector<std::string> names = w.namesOf(name);
+            w.manager().change([&](ArticulatedCollisionManager& m) {
+              for (const std::string& one : names) m.setObjectSpeed(one, {speed, since});
+            });
+          },
+          "Says how fast an obstacle or attached object may move by itself, in any direction, as a person does: free "
+          "then\n"
+          "holds wherever it goes. `speed`: m/s for a trajectory in seconds; `since`: from then on, after the "
+          "trajectory's\n"
+          "begin; negative: it was seen so long before. Motions without times are then refused; a single configuration "
+          "takes\n"
+          "1 s.",
+          py::arg("name"), py::arg("speed"), py::arg("since") = 0.0)
+      .def(
           "reset_tolerances",
           [](World& w) { w.manager().change([](ArticulatedCollisionManager& m) { m.resetTolerances(); }); },
-          "Forgets the tolerances of joints, base and objects.")
+          "Forgets the tolerances of joints, base and objects, and the objects' speeds.")
       .def_property_readonly(
           "tolerances",
           [](const World& w) {
@@ -735,6 +767,7 @@ void bindWorld(py::module_& module) {
   bindBatch(module, world);
   bindPicture(module, world);
   bindReport(world);
+  bindGuard(module);
 }
 
 }  // namespace fcl_artic::python

@@ -91,12 +91,20 @@ using Question = std::variant<JointMotion, JointTrajectory>;
 /// @param q1  None where `motion` is a motion or trajectory itself.
 Question questionOf(const World& world, py::handle motion, py::handle q1);
 
+/// Objects that move by themselves move for as long as a motion takes: from its begin to its end. So a motion needs
+/// times of its own where the manager has such objects.
+/// @param no_clock  why the question's times are none; empty: a trajectory has some.
+/// @throws std::invalid_argument.
+void requireClock(const ArticulatedCollisionManager& manager, const Question& question,
+                  const std::string& no_clock = {});
 /// Asks, and tells `progress` of the request and Ctrl-C meanwhile.
-CertifiedResult answer(const World& world, const Question& question, Request request);
+/// @param no_clock  as in requireClock().
+CertifiedResult answer(const World& world, const Question& question, Request request, const std::string& no_clock = {});
 /// @throws ValueError for a result of another question: its links stand elsewhere at t_lower, or are other links.
 void requireAnswerOf(const World& world, const Question& question, const CertifiedResult& result);
 
 void bindWorld(py::module_& module);
+void bindGuard(py::module_& module);
 void bindPlans(py::module_& module, py::class_<World>& world);
 void bindBatch(py::module_& module, py::class_<World>& world);
 void bindPicture(py::module_& module, py::class_<World>& world);

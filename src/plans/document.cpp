@@ -541,6 +541,7 @@ class Reader {
       read(message[i], fmt::format("{}[{}]", label, i), now, depth);
       for (std::size_t p = begin; p < out_.size(); ++p) {
         Plan& plan = out_[p];
+        plan.part = true;
         if (!plan.error.empty()) continue;
         if (plan.joints.empty()) plan.error = "a message in several parts names the joints of each";
         const bool whole = !plan.positions.empty() && plan.positions.front().size() == plan.joints.size() &&

@@ -366,16 +366,23 @@ PlanMotion toMotion(const KinematicTree& tree, const Plan& given, const MotionOp
     if (!columns.has(v)) others[tree.variableName(v)] = rest[v];
   }
   JointTrajectory motion = makeTrajectory(tree, kind, through, options.blend, unwrap);
-  return {kind,
-          columns.names,
-          !plan.joints.empty() && !plan.joints_counted,
-          plan.foreign,
-          std::move(others),
-          std::move(times),
-          std::move(q),
-          std::move(motion),
-          timed,
-          std::move(notes)};
+  return {kind,         columns.names,     !plan.joints.empty() && !plan.joints_counted,
+          plan.foreign, std::move(others), std::move(times),
+          std::move(q), std::move(motion), timed,
+          plan.part,    std::move(notes)};
+}
+
+void requireClock(const PlanMotion& motion) {
+  if (!motion.timed) {
+    throw std::invalid_argument(
+        "the plan has no times, and an object moves by itself meanwhile, nobody knows how far: give the plan times, or "
+        "the object no speed");
+  }
+  if (motion.part) {
+    throw std::invalid_argument(
+        "the plan is a part of a message, carried out after or before others, and an object moves by itself all the "
+        "while: join the parts to one plan, or give the object no speed");
+  }
 }
 
 }  // namespace fcl_artic::plans

@@ -68,6 +68,7 @@ struct PlanMotion {
   std::vector<Eigen::VectorXd> waypoints;  ///< all variables of the tree, as the plan has them
   JointTrajectory trajectory;
   bool timed;
+  bool part;                       ///< of Plan
   std::vector<std::string> notes;  ///< the plan's, and what was accepted though unusual
 
   /// The waypoint at or before time t: 0 to the last.
@@ -82,6 +83,10 @@ Plan inRadians(const KinematicTree& tree, const Plan& plan);
 /// The variables that columns without names are: MotionOptions::joints, else all that MotionOptions::state does not
 /// give.
 std::vector<std::string> unnamedColumns(const KinematicTree& tree, const MotionOptions& options);
+
+/// For plans among objects that move by themselves (ObjectSpeed): these begin at their places with the plan.
+/// @throws std::invalid_argument: the plan has no times, or is one of several parts that follow each other.
+void requireClock(const PlanMotion& motion);
 
 /// @throws std::invalid_argument naming waypoint and joint:
 ///   - the plan's own error;

@@ -27,6 +27,7 @@ struct Plan {
   std::vector<std::string> joints;  ///< names of variables (KinematicTree::variableName()); empty: all of the robot's
   bool joints_counted = false;      ///< the file numbers its columns: `joints` are those of ColumnOptions::joints
   bool foreign = false;             ///< a CSV file of another layout than writePlans() has
+  bool part = false;                ///< of a message in several parts, which are carried out one after the other
   std::vector<double> times;        ///< s, one for each waypoint; empty: none are given
   Rows positions;                   ///< rad or m
   Rows velocities, accelerations;   ///< rad/s, m/s, and per s²; empty: none are given

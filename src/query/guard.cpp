@@ -11,8 +11,8 @@
 // The range. Let r be the reaction, P the period, d the braking (1/s^2), f0 the speed until the answer is followed.
 //   f >= f0: (r + P) f + f^2 / (2 d),                               T = r + P + f / d
 //   f < f0, reached within P: r f0 + (f0^2 - f^2) / (2 d) + (P - (f0 - f) / d) f + f^2 / (2 d),   the same T
-// So the slowest speed that can be promised is f0 - d P. It takes the range r f0 + f0^2 / (2 d) in all, and T = r + f0
-// / d. (If the speed varies, f is its largest value.)
+// So the slowest speed that can be promised is f0 - d P, or 0. It takes the range r f0 + f0^2 / (2 d) in all, and T = r
+// + f0 / d. (If the speed varies, f is its largest value.)
 //
 // Looking ahead, at full speed. A stop that begins at any time, at full speed, takes 1 / d for a range of 1 / (2 d). So
 // it passes each place at most 1 / (2 d) later than full speed does: T(s) = s - s0 + r + 1 / (2 d) holds for all of
@@ -272,7 +272,7 @@ Guard::Impl::Plan Guard::Impl::planAt(double f) const {
   const double stop = d < kInfinity ? f / d : 0, way_of_stop = d < kInfinity ? f * f / (2 * d) : 0;
   if (f >= f0) return {f, kUp * ((r + P) * f + way_of_stop), kUp * (r + P) * f, kUp * (r + P + stop)};
   const double slowing = (f0 - f) / d;
-  if (slowing >= P) {  // braking all the time
+  if (slowing >= P || f == 0) {  // braking all the time, until the robot stands
     return {f, kUp * (r * f0 + f0 * f0 / (2 * d)), kUp * r * f0, kUp * (r + f0 / d)};
   }
   const double until_slow = (f0 * f0 - f * f) / (2 * d);

@@ -118,6 +118,25 @@ TEST(Guard, APersonComesWhileItStops) {
   }
 }
 
+TEST(Guard, ACertifiedStopStaysCertified) {
+  // A person beside the track lets the cart go at less than the 0.1 that it brakes within a period. At the next
+  // question the scene is older by that, and the cart may just stop: it then stands after f / 2, not only after the
+  // period.
+  for (const double time : {0.055, 0.07, 0.09}) {
+    Track track;
+    const double P = track.options.period;
+    const auto scene = track.with(Vector3d(1, 0.2 + 1.6 * time, 0), {1.6, 0});
+    const GuardAnswer first = track.ask(*scene, 0, 11, 0);
+    ASSERT_TRUE(first.certified);
+    ASSERT_GT(first.speed, 0);
+    ASSERT_LT(first.speed, 2 * P);
+    const GuardAnswer next = track.ask(*scene, P, 11 + P * first.speed, first.speed);
+    EXPECT_TRUE(next.certified);
+    EXPECT_NEAR(next.stop_time, first.speed / 2, 1e-9);
+    EXPECT_LE(next.stop_at, first.stop_at + 1e-9);
+  }
+}
+
 TEST(Guard, TolerancesAndMarginsCount) {
   Track track;
   track.cart.manager->setJointTolerances({0, 0.1});
