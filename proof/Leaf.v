@@ -77,24 +77,31 @@ Definition remains (fs : tree) (l : Z) (gap : upper) (v u : view) : bool :=
   Nat.eqb (v_frame v) (v_frame u) && Nat.leb (v_frame v) (length fs) &&
   match upper_plus (v_stray v) (v_stray u) with Some k => negative (upper_add gap (upper_scale l k)) | None => false end.
 
-(** Seen from the frame that both stand in, or else from one between the two: distances are the same from everywhere. *)
-Definition remains_somewhere (fs : tree) (pl : plays) (l : Z) (gap : upper) (os os' : forest) (a b : list view) : bool :=
+(** The same, seen from the body B, in whose frame the view is. *)
+Definition remains_in (fs : tree) (l : Z) (gap : upper) (os : forest) (B : sbody) (v : view) : bool :=
+  negb (is_none (sb_give B)) && Nat.eqb (v_frame v) (sb_frame B) && Nat.leb (v_frame v) (length fs) &&
+  let (_, w) := fall_all os [sb_place B] [sb_give B] (v_pose v) in
+  match upper_plus (v_stray v) w with Some k => negative (upper_add gap (upper_scale l k)) | None => false end.
+
+(** Seen from the frame that both stand in, or else from a frame between the two, or a body: distances are the same from
+    everywhere. *)
+Definition remains_on_the_way (fs : tree) (pl : plays) (l : Z) (gap : upper) (os : forest) (v : view) (B : sbody) (b : list view) : bool :=
+  let down := v :: descend fs (p_gives pl) os v (way_down (v_frame v) b []) in
+  existsb (fun v' => match view_at (v_frame v') b with Some u' => remains fs l gap v' u' | None => false end) (tl down) ||
+  existsb (remains_in fs l gap os B) down.
+Definition remains_somewhere (fs : tree) (pl : plays) (l : Z) (gap : upper) (A B : sbody) (os os' : forest) (a b : list view) : bool :=
   match common a b with
   | None => false
   | Some (v, u) =>
       remains fs l gap v u ||
-      p_any pl &&
-      (existsb (fun v' => match view_at (v_frame v') b with Some u' => remains fs l gap v' u' | None => false end)
-         (descend fs (p_gives pl) os v (way_down (v_frame v) b [])) ||
-       existsb (fun u' => match view_at (v_frame u') a with Some v' => remains fs l gap v' u' | None => false end)
-         (descend fs (p_gives pl) os' u (way_down (v_frame u) a [])))
+      p_any pl && (remains_on_the_way fs pl l gap os v B b || remains_on_the_way fs pl l gap os' u A a)
   end.
 
 (** (A value of a coinductive type is lazy in OCaml.) *)
 CoInductive later := Later (views : list view).
 
-Definition shown (fs : tree) (pl : plays) (known : list (nat * func)) (sd : side) (l : Z) (ua : option upper) (os : forest)
-    (views : later) (p : partner) : bool :=
+Definition shown (fs : tree) (pl : plays) (known : list (nat * func)) (sd : side) (l : Z) (ua : option upper) (A : sbody)
+    (os : forest) (views : later) (p : partner) : bool :=
   match at_frame (length fs) fs known (sb_frame (p_body p)) with
   | None => false
   | Some f =>
@@ -103,7 +110,7 @@ Definition shown (fs : tree) (pl : plays) (known : list (nat * func)) (sd : side
           let gap := upper_add (upper_add u w) (upper_const (mulup (Z.max 0 (p_margin p)) l)) in
           negative gap &&
           match views with
-          | Later a => remains_somewhere fs pl l gap os (p_pieces p) a (views_up fs pl (p_body p) (p_pieces p))
+          | Later a => remains_somewhere fs pl l gap A (p_body p) os (p_pieces p) a (views_up fs pl (p_body p) (p_pieces p))
           end
       | _, _ => false
       end
@@ -153,7 +160,7 @@ Definition not_shown (fs : tree) (pl : plays) (A : sbody) (os : forest) (n : lin
       let l := length_up (fv (l_func n)) in
       let ua := own_reach (l_side n) (down (sb_place A) f) l os in
       let views := Later (views_up fs pl A os) in
-      filter (fun p => negb (shown fs pl known (l_side n) l ua os views p)) ps
+      filter (fun p => negb (shown fs pl known (l_side n) l ua A os views p)) ps
   end.
 
 (** Over [a, b], of which [ts] are the poses. Time is halved for those that are left, [fuel] times. *)
@@ -176,7 +183,7 @@ Fixpoint separated (fuel : nat) (sfs : list sframe) (q : spiece) (pl : plays) (A
 
 (** F takes points of the body to its frame, F' to where they may be. *)
 Definition stands (s : R) (A : sbody) (F F' : vec -> vec) : Prop :=
-  holds_step s (sb_place A) F /\ moves_by s (sb_give A) F F'.
+  holds_step s (sb_place A) F /\ isometry F' /\ onto F' /\ moves_by s (sb_give A) F F'.
 
 (** A keeps more than its margin from a partner, where the frames may be at P'. *)
 Definition keeps (P' : nat -> vec -> vec) (A : sbody) (os : forest) (p : partner) : Prop :=
@@ -298,7 +305,7 @@ Lemma views_up_ok A os F F' x o : stands s A F F' -> has os o -> covers s o x ->
   let X := P (sb_frame A) (F x) in let X' := P' (sb_frame A) (F' x) in
   seen_from s P P' (v_frame v) (v_stray v) X X' /\ (p_any pl = true -> seen s P P' v x X X').
 Proof.
-  intros [HF HM] I C v. unfold views_up.
+  intros (HF & _ & _ & HM) I C v. unfold views_up.
   destruct (negb (p_any pl) && is_none (sb_give A)) eqn:K; cbv zeta.
   - apply andb_true_iff in K. destruct K as [K1 K2]. apply negb_true_iff in K1.
     destruct (sb_give A); [discriminate|]. cbn [moves_by] in HM. rewrite HM. intros J. split; [|congruence].
@@ -325,25 +332,61 @@ Proof.
   destruct (upper_plus (v_stray v) (v_stray u)) as [k|]; [|discriminate]. exists r, k. auto.
 Qed.
 
+Lemma remaining_turned l gap X Y X' Y' : remaining l gap X Y X' Y' -> remaining l gap Y X Y' X'.
+Proof.
+  intros (r & k & R0 & B & N & D). exists r, k. repeat (split; [assumption|]).
+  assert (SW : forall u v : vec, norm (sub u v) = norm (sub v u)) by (intros u v; apply norm_of_dots; destruct u, v; coords; ring).
+  rewrite (SW Y X), (SW Y' X'). exact D.
+Qed.
+
+Lemma remains_in_ok l gap os o x X X' B G G' y v : has os o -> covers s o x -> seen s P P' v x X X' -> stands s B G G' ->
+  remains_in fs l gap os B v = true -> remaining l gap X (P (sb_frame B) (G y)) X' (P' (sb_frame B) (G' y)).
+Proof.
+  intros Io Co (F & z' & HT & IF & EX & EX' & Bz) (HG & IG & OG & MG). unfold remains_in.
+  rewrite !andb_true_iff, Nat.eqb_eq, Nat.leb_le. intros [[[_ E] L] K]. unfold fs in L. rewrite tree_length in L.
+  assert (ST : strays s [sb_place B] [sb_give B] G G').
+  { apply strays_first with (E := G) (E' := G') (M := fun z => z) (M' := fun z => z);
+      [exact HG | exact IG | exact OG | exact MG | apply strays_no; reflexivity | reflexivity | reflexivity]. }
+  pose proof (fall_all_ok s Hs os _ _ G G' ST (v_pose v) F o x z' (v_stray v) HT IF Io Co Bz) as FA.
+  destruct (fall_all os [sb_place B] [sb_give B] (v_pose v)) as [T w']. destruct FA as (Y & Z' & _ & _ & EY & EZ & Bw).
+  destruct (upper_plus (v_stray v) w') as [k|]; [|discriminate].
+  destruct (frames_isometric w pc s t (time_tm a b) Hs Hts P P' HP (proj1 WF) _ _ (le_n _) L) as [I I'].
+  exists (norm (sub Z' (Y x))), k. split; [apply norm_nonneg|]. split; [exact Bw|]. split; [exact K|].
+  rewrite EX, EX', <- E, <- EY, <- EZ, (I _ _), (I' _ _), (IG _ _), (step_keeps s _ _ _ _ HG).
+  pose proof (triangle_of (Y x) Z' y) as T1.
+  assert (SW : norm (sub (Y x) Z') = norm (sub Z' (Y x))) by (apply norm_of_dots; generalize (Y x); intros u; destruct u, Z'; coords; ring). lra.
+Qed.
+
+Lemma on_the_way_ok l gap os o x X X' v B os' o' G G' y : has os o -> covers s o x -> seen s P P' v x X X' ->
+  stands s B G G' -> has os' o' -> covers s o' y ->
+  remains_on_the_way fs pl l gap os v B (views_up fs pl B os') = true ->
+  remaining l gap X (P (sb_frame B) (G y)) X' (P' (sb_frame B) (G' y)).
+Proof.
+  intros Io Co HV HB Iy Cy. unfold remains_on_the_way. cbn [tl].
+  assert (CH : forall i k sts g, nth_error fs i = Some (k, sts) -> nth_error (p_gives pl) i = Some g ->
+    exists M M', strays s sts g M M' /\ (forall z, P (S i) z = P k (M z)) /\ (forall z, P' (S i) z = P' k (M' z)))
+    by (intros i k sts g; apply (frame_strays w pc s t (time_tm a b) Hs Hts P P' HP)).
+  pose proof (descend_ok s Hs fs (p_gives pl) P P' CH os o x X X' Io Co (way_down (v_frame v) (views_up fs pl B os') []) v HV) as D.
+  rewrite orb_true_iff, !existsb_exists. intros [(v' & J & K)|(v' & J & K)].
+  - destruct (view_at (v_frame v') _) as [u'|] eqn:V; [|discriminate].
+    eapply remains_ok; [exact K | exact (seen_is_from _ _ _ _ _ _ _ (D v' J)) |].
+    exact (proj1 (views_up_ok B os' G G' y o' HB Iy Cy u' (view_at_in _ _ _ V))).
+  - eapply remains_in_ok; [exact Io | exact Co | | exact HB | exact K]. destruct J as [<-|J]; [exact HV | exact (D v' J)].
+Qed.
+
 Lemma remains_somewhere_ok A os p F F' G G' x y o o' l gap : stands s A F F' -> stands s (p_body p) G G' ->
   has os o -> covers s o x -> has (p_pieces p) o' -> covers s o' y ->
-  remains_somewhere fs pl l gap os (p_pieces p) (views_up fs pl A os) (views_up fs pl (p_body p) (p_pieces p)) = true ->
+  remains_somewhere fs pl l gap A (p_body p) os (p_pieces p) (views_up fs pl A os) (views_up fs pl (p_body p) (p_pieces p)) = true ->
   remaining l gap (P (sb_frame A) (F x)) (P (sb_frame (p_body p)) (G y)) (P' (sb_frame A) (F' x)) (P' (sb_frame (p_body p)) (G' y)).
 Proof.
   intros HA HB Ix Cx Iy Cy. pose proof (views_up_ok A os F F' x o HA Ix Cx) as SA.
   pose proof (views_up_ok (p_body p) (p_pieces p) G G' y o' HB Iy Cy) as SB. cbv zeta in SA, SB. unfold remains_somewhere.
   destruct (common _ _) as [[v u]|] eqn:E; [|discriminate]. destruct (common_in _ _ _ _ E) as [Iv Iu].
-  assert (CH : forall i k sts g, nth_error fs i = Some (k, sts) -> nth_error (p_gives pl) i = Some g ->
-    exists M M', strays s sts g M M' /\ (forall z, P (S i) z = P k (M z)) /\ (forall z, P' (S i) z = P' k (M' z)))
-    by (intros i k sts g; apply (frame_strays w pc s t (time_tm a b) Hs Hts P P' HP)).
-  rewrite orb_true_iff, andb_true_iff, orb_true_iff, !existsb_exists. intros [K|[N [(v' & J & K)|(u' & J & K)]]].
+  rewrite orb_true_iff, andb_true_iff, orb_true_iff. intros [K|[N [K|K]]].
   - exact (remains_ok _ _ _ _ _ _ _ _ K (proj1 (SA v Iv)) (proj1 (SB u Iu))).
-  - destruct (view_at (v_frame v') _) as [u'|] eqn:V; [|discriminate].
-    eapply remains_ok; [exact K | | exact (proj1 (SB u' (view_at_in _ _ _ V)))]. apply seen_is_from with (x := x).
-    exact (descend_ok s Hs fs (p_gives pl) P P' CH os o x _ _ Ix Cx _ v (proj2 (SA v Iv) N) v' J).
-  - destruct (view_at (v_frame u') _) as [v'|] eqn:V; [|discriminate].
-    eapply remains_ok; [exact K | exact (proj1 (SA v' (view_at_in _ _ _ V))) |]. apply seen_is_from with (x := y).
-    exact (descend_ok s Hs fs (p_gives pl) P P' CH (p_pieces p) o' y _ _ Iy Cy _ u (proj2 (SB u Iu) N) u' J).
+  - exact (on_the_way_ok l gap os o x _ _ v (p_body p) (p_pieces p) o' G G' y Ix Cx (proj2 (SA v Iv) N) HB Iy Cy K).
+  - apply remaining_turned.
+    exact (on_the_way_ok l gap (p_pieces p) o' y _ _ u A os o F F' x Iy Cy (proj2 (SB u Iu) N) HA Ix Cx K).
 Qed.
 End Views.
 
@@ -355,7 +398,7 @@ Proof.
   set (known := chain (length fs) fs (l_frame n) (l_func n)). set (l := length_up (fv (l_func n))).
   destruct (at_frame (length fs) fs known (sb_frame A)) as [f|] eqn:EA; [|left; exact Ip].
   set (ua := own_reach (l_side n) (down (sb_place A) f) l os).
-  destruct (shown fs (plays_of w q) known (l_side n) l ua os (Later (views_up fs (plays_of w q) A os)) p) eqn:ES.
+  destruct (shown fs (plays_of w q) known (l_side n) l ua A os (Later (views_up fs (plays_of w q) A os)) p) eqn:ES.
   2:{ left. apply filter_In. split; [exact Ip|]. rewrite ES. reflexivity. }
   right. intros F F' G G' HFF HGG x y o o' Io Co Io' Co'.
   destruct (time_ok a b t Ht) as (s & Hs & Hts).

@@ -1001,10 +1001,11 @@ End AtOneTime.
 
 Definition is_none {T} (x : option T) : bool := match x with None => true | Some _ => false end.
 
-(** What frames give over a piece of the motion; whether there is anything. *)
+(** What frames give over a piece of the motion; whether any frame or body gives something. *)
 Record plays := Plays { p_gives : list (list (option give)); p_any : bool }.
 Definition plays_of (w : world) (p : spiece) : plays :=
-  let gs := gives_of w p in Plays gs (negb (forallb (forallb is_none) gs)).
+  let gs := gives_of w p in
+  Plays gs (negb (forallb (forallb is_none) gs && forallb (fun b => is_none (body_give w b)) (bodies w))).
 
 Lemma strays_none s sts gs E E' : strays s sts gs E E' -> forallb is_none gs = true -> forall x, E' x = E x.
 Proof.
@@ -1111,8 +1112,8 @@ Proof.
   destruct (nth_error (p_gives pl) j) as [g|] eqn:G; [|apply nth_error_None in G; pose proof (proj2 fs_gs_length); lia].
   destruct (frame_strays j k sts g N G) as (E & E' & HS & X1 & X2).
   assert (K : forallb is_none g = true).
-  { unfold pl, plays_of in A. cbn [p_any] in A. apply negb_false_iff in A. rewrite forallb_forall in A.
-    apply A. exact (nth_error_In _ _ G). }
+  { unfold pl, plays_of in A. cbn [p_any] in A. apply negb_false_iff, andb_true_iff in A. destruct A as [A _].
+    rewrite forallb_forall in A. apply A. exact (nth_error_In _ _ G). }
   rewrite X1, X2, (strays_none _ _ _ _ _ HS K). exact (IH k (E x) v J).
 Qed.
 

@@ -254,8 +254,10 @@ Proof.
   rewrite N. apply Rle_lt_trans with (V (margin_up w m a b)); [apply margin_up_ok|].
   assert (ST : forall c C D s, pose_map (body_place c) C -> pose_off (body_tolerance w c) D ->
     stands s (Sbody (body_frame c) (placed (body_place c)) (body_give w c)) C (fun p => C (D p))).
-  { intros c C' D s HC HD. split; [apply placed_ok; exact HC|]. apply pose_off_moves; [|exact HD].
-    intros p p'. apply (step_keeps s _ _ p p' (placed_ok s _ _ HC)). }
+  { intros c C' D s HC HD. pose proof (placed_ok s _ _ HC) as HS. pose proof (pose_off_isometry _ _ HD) as ID.
+    assert (IC : isometry C') by (intros p p'; apply (step_keeps s _ _ p p' HS)).
+    split; [exact HS|]. split; [intros p p'; rewrite (IC _ _); apply ID|]. split; [|apply pose_off_moves; assumption].
+    intros p. destruct (step_onto s _ _ HS p) as [p1 <-]. destruct (pose_off_onto _ _ HD p1) as [p2 <-]. exists p2. reflexivity. }
   exact (K B (fun p => B (G p)) A (fun p => A (F p)) (fun s => ST b B G s HB HG) (fun s => ST a A F s HA HF)
     y' x' o' o Io' Co' Io Co).
 Qed.

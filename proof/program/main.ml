@@ -48,6 +48,9 @@ let pairs w m =
 type meeting = Nothing | Contact of string | Within_margin of string
 type verdict = Proven of int * meeting | Not_proven of string | Bad of string
 
+(* Whether the world has tolerances: then the claim is about all paths within them. *)
+let is_tube w = w.off <> { of_variables = []; of_vectors = []; of_rotations = []; of_frames = []; of_bodies = [] }
+
 (* Which part of the claim is not shown. *)
 let fault w m =
   if not (is_meaningful w m) then "no rotation is near the nine numbers of some pose"
@@ -103,16 +106,22 @@ let shown text =
   String.concat "" (List.map (fun c -> if c < ' ' || c > '~' then Printf.sprintf "\\x%02x" (Char.code c) else String.make 1 c)
     (List.of_seq (String.to_seq text)))
 
-let as_json = function
-  | Proven (n, Nothing) -> Printf.sprintf {|{"proven": true, "pairs": %d}|} n
-  | Proven (n, Contact what) -> Printf.sprintf {|{"proven": true, "pairs": %d, "contact": %s}|} n (quoted what)
-  | Proven (n, Within_margin what) -> Printf.sprintf {|{"proven": true, "pairs": %d, "within_margin": %s}|} n (quoted what)
+let as_json tube v =
+  let proven n more =
+    Printf.sprintf {|{"proven": true, "pairs": %d%s%s}|} n (if tube then {|, "within_tolerances": true|} else "") more
+  in
+  match v with
+  | Proven (n, Nothing) -> proven n ""
+  | Proven (n, Contact what) -> proven n (Printf.sprintf {|, "contact": %s|} (quoted what))
+  | Proven (n, Within_margin what) -> proven n (Printf.sprintf {|, "within_margin": %s|} (quoted what))
   | Not_proven why | Bad why -> Printf.sprintf {|{"proven": false, "reason": %s}|} (quoted why)
 
-let as_text = function
-  | Proven (n, Nothing) -> Printf.sprintf "proven, %d pairs" n
-  | Proven (n, Contact what) -> Printf.sprintf "proven, %d pairs; and these meet: %s" n what
-  | Proven (n, Within_margin what) -> Printf.sprintf "proven, %d pairs; and these come within their margin: %s" n what
+let as_text tube v =
+  let proven n more = Printf.sprintf "proven, %d pairs%s%s" n (if tube then " within all tolerances" else "") more in
+  match v with
+  | Proven (n, Nothing) -> proven n ""
+  | Proven (n, Contact what) -> proven n ("; and these meet: " ^ what)
+  | Proven (n, Within_margin what) -> proven n ("; and these come within their margin: " ^ what)
   | Not_proven why -> "not proven: " ^ why
   | Bad why -> why
 
@@ -152,17 +161,17 @@ let command () =
 let () =
   let asked = command () in
   let proven = ref 0 and all = ref 0 and bad = ref false in
-  let one known prepared hash path alone k record =
+  let one (known : Read.known) prepared hash path alone k record =
     let begun = Sys.time () in
     let v = verdict known prepared hash asked.work record in
     let seconds = Sys.time () -. begun in
     incr all;
     (match v with Proven _ -> incr proven | Not_proven _ -> () | Bad _ -> bad := true);
     if asked.json then
-      Printf.printf "{\"file\": %s, \"record\": %d, \"seconds\": %.6f, \"verdict\": %s}\n" (quoted path) k seconds (as_json v)
+      Printf.printf "{\"file\": %s, \"record\": %d, \"seconds\": %.6f, \"verdict\": %s}\n" (quoted path) k seconds (as_json (is_tube known.w) v)
     else begin
       let where = shown path ^ if alone then "" else Printf.sprintf ", record %d" k in
-      (match v with Proven _ when asked.quiet -> () | _ -> Printf.printf "%s: %s\n" where (shown (as_text v)));
+      (match v with Proven _ when asked.quiet -> () | _ -> Printf.printf "%s: %s\n" where (shown (as_text (is_tube known.w) v)));
       if asked.times then Printf.printf "%s: %.6f s\n" where seconds
     end
   in

@@ -334,20 +334,20 @@ let check_tolerances l t w =
     | Slide (_, u, n, _) :: rest when u = v && same_size m n -> count = 1 || is_vector m (v + 1) (count - 1) rest
     | _ -> false
   in
-  (* [before]: the elements of the frame that come before this one, the last one first. *)
+  let vectors = List.sort compare (List.map (fun (v, (count, _)) -> (v, count)) t.vectors) in
+  (* A variable is in one vector at most: of two that share one, the second begins nowhere. [before]: the elements of the
+     frame that come before this one, the last one first. *)
   let of_vector before e rest u m =
-    List.iter
-      (fun (v, (count, _)) ->
-        if u >= v && u < v + count then begin
-          let place = u - v in
-          let from = List.rev_append (List.filteri (fun k _ -> k < place) before) (e :: rest) in
-          let multiplier = match from with Slide (_, _, n, _) :: _ -> n | _ -> m in
-          let slides = match e with Slide _ -> true | _ -> false in
-          if (not slides) || place > List.length before || (not (is_vector multiplier v count from)) || List.mem_assoc u t.variables
-          then refuse "vector" v "its variables do more than slide one after the other, or have tolerances of their own";
-          if place = 0 then Hashtbl.replace first v ()
-        end)
-      t.vectors
+    match List.find_opt (fun (v, count) -> u >= v && u < v + count) vectors with
+    | None -> ()
+    | Some (v, count) ->
+        let place = u - v in
+        let from = List.rev_append (List.filteri (fun k _ -> k < place) before) (e :: rest) in
+        let multiplier = match from with Slide (_, _, n, _) :: _ -> n | _ -> m in
+        let slides = match e with Slide _ -> true | _ -> false in
+        if (not slides) || place > List.length before || (not (is_vector multiplier v count from)) || List.mem_assoc u t.variables
+        then refuse "vector" v "its variables do more than slide one after the other, or have tolerances of their own";
+        if place = 0 then Hashtbl.replace first v ()
   in
   let rec elements before = function
     | [] -> ()
