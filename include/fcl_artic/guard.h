@@ -142,17 +142,19 @@ class FCL_ARTIC_EXPORT Guard {
   Guard(Guard&&) noexcept;
   Guard& operator=(Guard&&) noexcept;
 
-  /// Takes the trajectory that the robot follows from now on. Its times are in s.
+  /// Takes the trajectory that the robot follows from now on. Its times are in s. A robot that moves keeps to the last
+  /// answer about the old trajectory, its braking too, until an answer about the new one is certified.
   /// @throws std::invalid_argument if it is of other joint variables.
   void follow(const JointTrajectory& trajectory);
 
   /// How the robot may go on.
-  /// @param scene  as LiveScene::latest() has it, with obstacles that stand still or move by themselves (ObjectSpeed).
+  /// @param scene  as LiveScene::latest() has it, with obstacles that stand still or move by themselves (ObjectSpeed:
+  ///   `since` counts from when the scene was seen).
   /// @param now  s, by the same clock as the scene's.
   /// @param path_time  the trajectory's time at which the robot is now; clamped to the trajectory.
   /// @param path_speed  no less than the largest factor of speed that the robot may have until the answer is followed,
   ///   0 to 1.
-  /// @param[out] answer  its memory is used again.
+  /// @param[out] answer  its memory is used again. After an error it has speed 0 and no certificate.
   /// @throws std::invalid_argument for numbers that are not finite or out of range, a scene of another robot, and an
   ///   obstacle with a motion of its own (registerObject() of a ContinuousCollisionObject).
   /// @throws std::logic_error before follow(), and as ArticulatedCollisionManager::continuousCollide().
@@ -160,7 +162,7 @@ class FCL_ARTIC_EXPORT Guard {
 
   /// How far ahead the trajectory is free at full speed, and until when a stop is possible that ends before that.
   /// @param scene, now, path_time  as for ask().
-  /// @param[out] answer  its memory is used again.
+  /// @param[out] answer  its memory is used again. After an error nothing is free.
   /// @throws as ask().
   void lookAhead(const LiveScene::Snapshot& scene, double now, double path_time, AheadAnswer& answer);
 
