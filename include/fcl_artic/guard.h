@@ -160,7 +160,8 @@ class FCL_ARTIC_EXPORT Guard {
   /// @throws std::logic_error before follow(), and as ArticulatedCollisionManager::continuousCollide().
   void ask(const LiveScene::Snapshot& scene, double now, double path_time, double path_speed, GuardAnswer& answer);
 
-  /// How far ahead the trajectory is free at full speed, and until when a stop is possible that ends before that.
+  /// How far ahead the trajectory is free at full speed, and until when a stop is possible that ends before that. It
+  /// holds for a robot that is at full speed from now on: one that is slower meets objects that move later than that.
   /// @param scene, now, path_time  as for ask().
   /// @param[out] answer  its memory is used again. After an error nothing is free.
   /// @throws as ask().
