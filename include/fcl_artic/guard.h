@@ -52,7 +52,7 @@ class FCL_ARTIC_EXPORT LiveScene {
 /// Settings of a guard, which stay.
 struct GuardOptions : Scope {
   /// How much the drives can brake along the path, beyond what the trajectory itself asks of them: rad/s² or m/s²,
-  /// above 0, tree().dof() entries.
+  /// above 0, tree().dof() entries. For a quaternion, x, y and z count, each about any axis.
   Eigen::VectorXd deceleration;
   /// s, above 0: the next answer comes within it. If none comes, the robot begins to stop.
   double period = 0.004;

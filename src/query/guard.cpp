@@ -331,7 +331,7 @@ Guard& Guard::operator=(Guard&&) noexcept = default;
 
 void Guard::follow(const JointTrajectory& trajectory) {
   trajectory.requireOf(*impl_->tree);
-  impl_->path.emplace(trajectory, impl_->options.deceleration);
+  impl_->path.emplace(trajectory, *impl_->tree, impl_->options.deceleration);
   impl_->promised_braking.reset();
 }
 

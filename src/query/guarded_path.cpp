@@ -29,18 +29,30 @@ double largestSlope(const Eigen::MatrixXd& c, Eigen::Index row, double at, doubl
 
 }  // namespace
 
-GuardedPath::GuardedPath(const JointTrajectory& trajectory, const Eigen::VectorXd& deceleration)
+GuardedPath::GuardedPath(const JointTrajectory& trajectory, const KinematicTree& tree,
+                         const Eigen::VectorXd& deceleration)
     : trajectory_(trajectory), bins_(kBins * trajectory.numPieces()) {
   const Eigen::Index dof = trajectory.size();
   rates_.setZero(dof, static_cast<Eigen::Index>(bins_.size()));
   part_error_.setZero(dof);
   largest_.setZero(dof);
-  for (std::size_t k = 0; k < trajectory.numPieces(); ++k) measurePiece(k, deceleration);
+  for (std::size_t k = 0; k < trajectory.numPieces(); ++k) measurePiece(k);
+  // A joint with a quaternion turns as fast as its rotation vector changes, or slower, but perhaps about another axis.
+  for (const JointId j : tree.quaternionJoints()) {
+    auto turns = rates_.middleRows(tree.quaternionVariable(j), 3);
+    for (Eigen::Index b = 0; b < turns.cols(); ++b) turns.col(b).setConstant(kUp * turns.col(b).norm());
+  }
+  for (Eigen::Index b = 0; b < rates_.cols(); ++b) {
+    double& braking = bins_[static_cast<std::size_t>(b)].braking;
+    for (Eigen::Index v = 0; v < dof; ++v) {
+      if (rates_(v, b) > 0) braking = std::min(braking, deceleration[v] / rates_(v, b));
+    }
+  }
 }
 
 /// Bounds how fast and how far a piece goes, bin by bin. An angle by the tangent of its half changes by at most twice
 /// as much as the tangent.
-void GuardedPath::measurePiece(std::size_t k, const Eigen::VectorXd& deceleration) {
+void GuardedPath::measurePiece(std::size_t k) {
   const JointMotion& piece = trajectory_.piece(k);
   const double begin = trajectory_.times()[k], duration = trajectory_.times()[k + 1] - begin;
   const Eigen::MatrixXd& c = piece.variables();
@@ -56,11 +68,9 @@ void GuardedPath::measurePiece(std::size_t k, const Eigen::VectorXd& deceleratio
       constexpr double kWidth = 1.0 / kBins;
       const auto b = static_cast<Eigen::Index>(kBins * k + i);
       const double slope = largestSlope(c, v, (static_cast<double>(i) + 0.5) * kWidth, 0.5 * kWidth + 0x1p-40);
-      const double rate = factor * (slope * kUp + 0x1p-45 * sum) / duration * kUp;
-      Bin& bin = bins_[static_cast<std::size_t>(b)];
-      bin.begin = begin + duration * static_cast<double>(i) * kWidth;
-      rates_(v, b) = rate;
-      if (slope > 0 && rate > 0) bin.braking = std::min(bin.braking, deceleration[v] / rate);
+      // (A variable that stands still has no terms that could be rounded.)
+      if (slope > 0) rates_(v, b) = factor * (slope * kUp + 0x1p-45 * sum) / duration * kUp;
+      bins_[static_cast<std::size_t>(b)].begin = begin + duration * static_cast<double>(i) * kWidth;
     }
   }
 }

@@ -19,7 +19,7 @@ namespace fcl_artic {
 class GuardedPath {
  public:
   /// @param deceleration  of each variable, above 0.
-  GuardedPath(const JointTrajectory& trajectory, const Eigen::VectorXd& deceleration);
+  GuardedPath(const JointTrajectory& trajectory, const KinematicTree& tree, const Eigen::VectorXd& deceleration);
 
   double begin() const { return trajectory_.beginTime(); }
   double end() const { return trajectory_.endTime(); }
@@ -39,7 +39,7 @@ class GuardedPath {
   const JointMotion& partOf(std::size_t piece, const TimePart& part);
 
  private:
-  void measurePiece(std::size_t piece, const Eigen::VectorXd& deceleration);
+  void measurePiece(std::size_t piece);
   std::size_t binAt(double time) const;
   template <class F>
   void forEachBin(double from, double to, const F& f) const;

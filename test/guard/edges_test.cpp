@@ -151,6 +151,25 @@ TEST(GuardEdges, BrakingIsThatOfAllOfTheRange) {
   }
 }
 
+TEST(GuardEdges, BrakingOfABallJointHoldsAboutAnyAxis) {
+  // It turns by w(t) = (t, t, t) rad: at sqrt 3 rad/s, later perhaps about one of the axes.
+  const auto tree = std::make_shared<KinematicTree>("ball");
+  for (const char* link : {"base", "hand"}) tree->addLink(link);
+  tree->addJoint(makeJoint("joint", JointType::spherical, "base", "hand", Vector3d::UnitZ()));
+  ArticulatedCollisionManager manager(tree);
+  manager.bind("hand", ball(0.1), pose({0.5, 0, 0}));
+  const LiveScene live(std::move(manager));
+  Eigen::MatrixXd turn = Eigen::MatrixXd::Zero(4, 2);
+  turn(3, 0) = 1;
+  turn.col(1).head<3>().setOnes();
+  Guard guard(tree, optionsOf(4));
+  guard.follow(JointTrajectory::piecewise(*tree, {0, 1}, {turn}));
+  GuardAnswer answer;
+  guard.ask(*live.latest(), 0, 0.2, 1, answer);
+  EXPECT_LE(answer.braking, 2 / std::sqrt(3));
+  EXPECT_GE(answer.braking, 2 / std::sqrt(3) - 1e-9);
+}
+
 TEST(GuardEdges, ASceneOfAnotherRobotIsRefused) {
   const Cart cart;
   // The same joint, other links: motions of both are the same.
