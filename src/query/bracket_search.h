@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -52,16 +53,23 @@ class BracketSearch {
   /// Asks with 0, with `number`, and on from there.
   /// @return whether the bracket is as narrow as is wanted.
   bool search(double number) {
-    bool done = query(0) == Verdict::contact;
-    while (!done && decide(number)) {
-      const double lower = found_.lower, upper = found_.upper;
-      const bool any_upper = std::isfinite(upper);
-      done = lower >= request_.most || (any_upper && upper - lower <= accuracy_.at(upper));
-      number = !any_upper  ? std::min(kStep * lower, request_.most)
-               : lower > 0 ? std::sqrt(lower * upper)
-                           : upper / kStep;
+    if (query(0) == Verdict::contact) return true;
+    while (decide(number)) {
+      const double lower = found_.lower, end = std::min(found_.upper, least_open_);
+      if (lower >= request_.most) return true;
+      if (std::isfinite(end) && end - lower <= accuracy_.at(end)) return found_.upper <= end;
+      number = !std::isfinite(end) ? std::min(kStep * lower, request_.most)
+               : lower > 0         ? std::sqrt(lower * end)
+                                   : end / kStep;
     }
-    return done;
+    return false;
+  }
+
+  /// A number for which nothing is proven: the search goes on below it.
+  /// @return whether it goes on at all.
+  bool leaveOpen(double number) {
+    least_open_ = std::min(least_open_, number);
+    return !spent_;
   }
 
   /// Asks with the rest of the budget. If nothing is left of it, does not ask.
@@ -106,6 +114,7 @@ class BracketSearch {
 
  private:
   bool spent_ = false;  ///< the budget, or the caller's patience
+  double least_open_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace fcl_artic

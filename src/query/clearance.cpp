@@ -50,9 +50,11 @@ class ClearanceSearch : BracketSearch<Queries, ClearanceRequest, Clearance> {
   }
 
  private:
-  /// Asks with this margin; if the answer is open, with a slightly larger one.
+  /// Asks with this margin; if the answer is open, with a slightly larger one. (With tolerances it is mostly open near
+  /// the largest margin that is free: the bound takes the worst of all joints at once.)
   bool decide(double margin) override {
-    return query(margin) != Verdict::open || query(margin + kOpen * accuracy_.at(margin)) != Verdict::open;
+    return query(margin) != Verdict::open || query(margin + kOpen * accuracy_.at(margin)) != Verdict::open ||
+           Base::leaveOpen(margin);
   }
 
   Verdict query(double margin) override {

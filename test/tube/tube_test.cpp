@@ -358,6 +358,12 @@ TEST(Speed, ATrajectoryHasItsOwnTime) {
   scene.cart.manager->setObjectSpeed("person", {0.5, 0});
   scene.cart.manager->setup();
   EXPECT_TRUE(scene.cart.manager->continuousCollide(quick, request).isFree());
+  // The distance over all ways that the person may take. Nobody shows a way that comes as near.
+  const Clearance clearance = scene.cart.manager->clearance(quick);
+  EXPECT_LE(clearance.lower, 1 - 0.2 - 0.5 * 1.5);
+  EXPECT_GE(clearance.lower, 1 - 0.2 - 0.5 * 1.5 - 1e-3);
+  EXPECT_FALSE(clearance.within_tolerance);
+  EXPECT_GE(clearance.upper, 0.25);
 }
 
 TEST(Speed, WhatIsRefused) {
