@@ -80,7 +80,7 @@ class Strays : PartOfSolver {
   /// How far something comes by itself until t.
   double wayOf(double speed, double since, double t) const;
   /// How far a body strays by itself until t: its pose's tolerance and its own way.
-  double ofBody(const Body& body, double t) const { return body.stray + wayOf(body.speed, body.since, t); }
+  double ofBody(const Body& body, double t) const { return factor() * body.stray + wayOf(body.speed, body.since, t); }
   /// Sums over the steps up to one, of the world's sweep.
   struct Form {
     bool made = false;
