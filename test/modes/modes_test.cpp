@@ -132,7 +132,8 @@ TEST(Modes, WorldsThatFoundFaults) {
 /// Bodies that slide along each other, of which the paper's method bounds equations for a minute on end.
 TEST(Modes, ThePapersMethodEndsWithoutABudget) {
   constexpr std::uint64_t kMaxWork = 1 << 17, kOneStep = 1 << 16;  // redon/redon.cpp; what is begun is ended
-  const auto ask = [](std::uint64_t seed, fcl_artic::CertifiedRequest request, fcl_artic::CertifiedResult& result) {
+  const auto ask = [](std::uint64_t seed, const fcl_artic::CertifiedRequest& request,
+                      fcl_artic::CertifiedResult& result) {
     modes::Random random(seed);
     if (random.chance(0.3)) random.snap(0.05);
     modes::World(random).ask(request, result);
