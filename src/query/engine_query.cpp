@@ -17,15 +17,6 @@
 #include "redon/options.h"
 
 namespace fcl_artic {
-namespace {
-
-void requirePositive(double x, const char* name) {
-  if (std::isfinite(x) && x > 0) return;
-  throw std::invalid_argument(std::string("request.") + name + " is " + shown(x) + ", not a positive number");
-}
-
-}  // namespace
-
 WorkspaceLoan::WorkspaceLoan() {
   thread_local QueryWorkspace own;
   if (own.busy_) other_ = std::make_unique<QueryWorkspace>();
@@ -41,8 +32,8 @@ engine::Margins marginsOf(const Tolerances& request) {
 }
 
 engine::Query makeQuery(const CertifiedPairRequest& request) {
-  requirePositive(request.tolerance_time, "tolerance_time");
-  requirePositive(request.tolerance_distance, "tolerance_distance");
+  requirePositive(request.tolerance_time, "request.tolerance_time");
+  requirePositive(request.tolerance_distance, "request.tolerance_distance");
   const engine::Margins margins = marginsOf(request);
   const int level = request.redon.refinement_level;
   if (level < -1 || level > 6) {

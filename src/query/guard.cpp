@@ -41,21 +41,12 @@
 #include "query/guarded_path.h"
 #include "query/manager_impl.h"
 #include "query/query_context.h"
-#include "query/round_up.h"
 
 namespace fcl_artic {
 namespace {
 
 /// s: how finely lookAhead() locates the first place that is not free.
 constexpr double kWantedTime = 1e-3;
-void requirePositive(double x, const char* what) {
-  if (std::isfinite(x) && x > 0) return;
-  throw std::invalid_argument(std::string(what) + " is " + shown(x) + ", not a positive number");
-}
-
-void requireFinite(double x, const char* what) {
-  if (!std::isfinite(x)) throw std::invalid_argument(std::string(what) + " is not finite");
-}
 
 /// A time that is no more than a duration after another one, whatever is rounded. (The difference of two times is exact
 /// where they are near each other.)

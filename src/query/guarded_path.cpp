@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "kinematics/exact_motion.h"
-#include "query/round_up.h"
 
 namespace fcl_artic {
 namespace {

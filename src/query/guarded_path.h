@@ -16,6 +16,9 @@
 
 namespace fcl_artic {
 
+/// Sums and products of a few positive numbers, rounded, times this are no less than the true ones.
+constexpr double kUp = 1 + 0x1p-48;
+
 class GuardedPath {
  public:
   /// @param deceleration  of each variable, above 0.

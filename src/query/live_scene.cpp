@@ -1,24 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cmath>
 #include <mutex>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "fcl_artic/guard.h"
-#include "numerics/shown.h"
+#include "numerics/require.h"
 
 namespace fcl_artic {
-namespace {
-
-void requireTime(double seen_at) {
-  if (std::isfinite(seen_at)) return;
-  throw std::invalid_argument("LiveScene: seen_at is " + shown(seen_at) + ", not a finite number");
-}
-
-}  // namespace
-
 struct LiveScene::Impl {
   std::shared_ptr<const Snapshot> get() const {
     const std::lock_guard<std::mutex> lock(handle);
@@ -33,7 +22,7 @@ struct LiveScene::Impl {
 };
 
 LiveScene::LiveScene(ArticulatedCollisionManager manager, double seen_at) : impl_(std::make_unique<Impl>()) {
-  requireTime(seen_at);
+  requireFinite(seen_at, "LiveScene: seen_at");
   manager.setup();
   impl_->latest = std::make_shared<const Snapshot>(Snapshot{std::move(manager), seen_at});
 }
@@ -45,7 +34,7 @@ std::shared_ptr<const LiveScene::Snapshot> LiveScene::latest() const {
 }
 
 void LiveScene::renew(double seen_at, const std::function<void(ArticulatedCollisionManager&)>& change) {
-  requireTime(seen_at);
+  requireFinite(seen_at, "LiveScene: seen_at");
   const std::lock_guard<std::mutex> one_at_a_time(impl_->renewing);
   ArticulatedCollisionManager manager = impl_->get()->manager.copy();
   change(manager);

@@ -79,10 +79,7 @@ void NamedTolerances::setObject(const std::string& name, const PoseTolerance& to
 
 void NamedTolerances::setSpeed(const std::string& name, const ObjectSpeed& speed) {
   requireNotNegative(speed.speed, "the speed of '" + name + "'");
-  if (!std::isfinite(speed.since)) {
-    throw std::invalid_argument("the time since which '" + name + "' may move is " + shown(speed.since) +
-                                ", not a finite number");
-  }
+  requireFinite(speed.since, "the time since which '" + name + "' may move");
   speed_of_[name] = speed;
 }
 

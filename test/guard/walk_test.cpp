@@ -109,9 +109,8 @@ struct Person {
 };
 
 struct Outcome {
-  bool touched = false;    ///< while the robot moved
-  double stood = 0;        ///< share of the time lost
-  bool unguarded = false;  ///< a robot without a guard would have touched
+  bool touched = false;  ///< while the robot moved
+  double stood = 0;      ///< share of the time lost
   std::size_t asked = 0, slowed = 0, stopped = 0;
   double most_us = 0, sum_us = 0;
 };
@@ -121,43 +120,60 @@ struct Robot {
   std::unique_ptr<ArticulatedCollisionManager> manager;
   Robot() {
     tree->addLink("link0");
-    manager = std::make_unique<ArticulatedCollisionManager>(tree);
-    const auto allow = [&](int i) { return "link" + std::to_string(i); };
+    const auto link = [&](int i) { return "link" + std::to_string(i); };
     for (int i = 0; i < 4; ++i) {
-      tree->addLink(allow(i + 1));
-      tree->addJoint(makeJoint("joint" + std::to_string(i), JointType::revolute, allow(i), allow(i + 1), kAxes[i],
+      tree->addLink(link(i + 1));
+      tree->addJoint(makeJoint("joint" + std::to_string(i), JointType::revolute, link(i), link(i + 1), kAxes[i],
                                pose(i ? Vector3d(kLength[i - 1], 0, 0) : Vector3d(0, 0, 0.8))));
     }
     manager = std::make_unique<ArticulatedCollisionManager>(tree);
     for (int i = 0; i < 4; ++i) {
       const auto capsule = std::make_shared<fcl::Capsuled>(kLink, kLength[i]);
-      manager->bind(allow(i + 1), object(capsule), pose({kLength[i] / 2, 0, 0}, M_PI / 2, Vector3d::UnitY()));
+      manager->bind(link(i + 1), object(capsule), pose({kLength[i] / 2, 0, 0}, M_PI / 2, Vector3d::UnitY()));
     }
     manager->setJointTolerances({kTracking, 0});
+  }
+};
+
+/// A way of the robot and a person, as a seed has them.
+struct Walk {
+  Random random;
+  Robot robot;
+  JointTrajectory trajectory;
+  Person person;
+
+  explicit Walk(std::uint64_t seed) : random(seed), trajectory(wayOf(*robot.tree, random)), person(personOf(random)) {}
+
+  static JointTrajectory wayOf(const KinematicTree& tree, Random& random) {
+    std::vector<VectorXd> waypoints;
+    std::vector<double> times;
+    for (int k = 0; k < 5; ++k) {
+      VectorXd q(4);
+      for (int i = 0; i < 4; ++i) q[i] = random.uniform(-1.2, 1.2);
+      waypoints.push_back(q);
+      times.push_back(k * random.uniform(0.95, 1.05));
+    }
+    const std::vector<VectorXd> still(5, VectorXd::Zero(4));
+    return JointTrajectory::quintic(tree, times, waypoints, still, still);
+  }
+  static Person personOf(Random& random) {
+    Person person{static_cast<Person::Way>(random.below(3)), {}, {}};
+    const double from = random.uniform(0, 2 * M_PI), far = random.uniform(2, 4);
+    person.at = Vector3d(far * std::cos(from), far * std::sin(from), 0);
+    person.target = -person.at + Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), 0);
+    return person;
   }
 };
 
 enum class Mode { graded, onOff, margin };
 
 Outcome walk(std::uint64_t seed, Mode mode) {
-  Random random(seed);
+  Walk drawn(seed);
+  Random& random = drawn.random;
+  Robot& robot = drawn.robot;
+  Person& person = drawn.person;
+  const JointTrajectory& trajectory = drawn.trajectory;
   Outcome outcome;
-  Robot robot;
-  std::vector<VectorXd> waypoints, still;
-  std::vector<double> times;
-  for (int k = 0; k < 5; ++k) {
-    VectorXd q(4);
-    for (int i = 0; i < 4; ++i) q[i] = random.uniform(-1.2, 1.2);
-    waypoints.push_back(q);
-    still.push_back(VectorXd::Zero(4));
-    times.push_back(k * random.uniform(0.95, 1.05));
-  }
-  const JointTrajectory trajectory = JointTrajectory::quintic(*robot.tree, times, waypoints, still, still);
-  Person person{static_cast<Person::Way>(random.below(3)), {}, {}};
-  const double from = random.uniform(0, 2 * M_PI), far = random.uniform(2, 4);
-  person.at = Vector3d(far * std::cos(from), far * std::sin(from), 0);
-  person.target = -person.at + Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), 0);
-
   GuardOptions options;
   options.deceleration = VectorXd::Constant(4, 12);
   options.period = kPeriod;
@@ -258,27 +274,12 @@ Outcome walk(std::uint64_t seed, Mode mode) {
 
 /// Whether a robot that nobody guards touches a person who walks as they like.
 bool touchesUnguarded(std::uint64_t seed) {
-  Random random(seed);
-  std::vector<VectorXd> waypoints, still;
-  std::vector<double> times;
-  for (int k = 0; k < 5; ++k) {
-    VectorXd q(4);
-    for (int i = 0; i < 4; ++i) q[i] = random.uniform(-1.2, 1.2);
-    waypoints.push_back(q);
-    still.push_back(VectorXd::Zero(4));
-    times.push_back(k * random.uniform(0.95, 1.05));
-  }
-  Robot robot;
-  const JointTrajectory trajectory = JointTrajectory::quintic(*robot.tree, times, waypoints, still, still);
-  Person person{static_cast<Person::Way>(random.below(3)), {}, {}};
-  const double from = random.uniform(0, 2 * M_PI), far = random.uniform(2, 4);
-  person.at = Vector3d(far * std::cos(from), far * std::sin(from), 0);
-  person.target = -person.at + Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), 0);
-  for (double now = 0; now < trajectory.endTime(); now += kPeriod / kSteps) {
-    const std::vector<Segment> links = linksAt(trajectory.configuration(now));
-    person.step(kPeriod / kSteps, links, random);
+  Walk drawn(seed);
+  for (double now = 0; now < drawn.trajectory.endTime(); now += kPeriod / kSteps) {
+    const std::vector<Segment> links = linksAt(drawn.trajectory.configuration(now));
+    drawn.person.step(kPeriod / kSteps, links, drawn.random);
     for (const Segment& link : links) {
-      if (distance(link, person.body()) < kLink + kPerson) return true;
+      if (distance(link, drawn.person.body()) < kLink + kPerson) return true;
     }
   }
   return false;
