@@ -184,8 +184,8 @@ World::World(const WorldOptions& options)
   if (tolerances_.speeds.empty() || options.timed) return;
   throw std::invalid_argument(
       fmt::format("--speed: here each motion is asked by itself, as if '{}' had just been seen at its place, so free "
-                  "would not hold "
-                  "for what comes after it: ask about whole plans with their times, by certify or check --trajectory",
+                  "would not hold for what comes after it: ask about whole plans with their times, by certify or check "
+                  "--trajectory",
                   tolerances_.speeds.front().object));
 }
 

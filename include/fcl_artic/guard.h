@@ -40,7 +40,8 @@ class FCL_ARTIC_EXPORT LiveScene {
   /// Renews the scene: changes a copy of it, sets that up and makes it the latest. Objects that stay are not read
   /// again, so their geometry must not be changed in place. Calls follow one another.
   /// @param seen_at  s, by the caller's clock, finite: when the sensor saw all of this.
-  /// @param change  of the copy; objects should be given by shared_ptr, as older scenes may still be in use.
+  /// @param change  of the copy; it must not call renew(). Objects should be given by shared_ptr, as older scenes may
+  ///   still be in use.
   /// @throws whatever `change` throws; std::invalid_argument as update(). The scene then stays as it was.
   void renew(double seen_at, const std::function<void(ArticulatedCollisionManager&)>& change);
 

@@ -92,9 +92,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
 
   /// Returns a manager of the same robot and scene, with all that was set. Both share, for good, what setup() has made
   /// of geometry and of pairs of links; changes of one are not seen by the other. The copy needs setup(), or update()
-  /// of no objects, which looks at no geometry again. So a scene with one object changed costs that object and little
-  /// more: 1 ms for 10,000 obstacles (LiveScene). Objects must outlive both managers where only their pointers were
-  /// given.
+  /// of no objects, which looks at no geometry again. A scene with one object changed costs that object, and lists
+  /// of the others (LiveScene). Objects must outlive both managers where only their pointers were given.
   [[nodiscard]] ArticulatedCollisionManager copy() const;
   /// Puts another object in the place of an obstacle that stands still. It takes over the name, and with it allowed
   /// pairs, margins, tolerance and speed. Needs setup().
