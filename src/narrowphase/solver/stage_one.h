@@ -113,7 +113,7 @@ inline void StageOne::sweepMover(int mover) {
     const FrameLanes* frame = carried.step < 0 ? nullptr : &frames_.of(0, carried.step);
     sweepLss({frame, frames_.bounds(0, carried.step), problem().sweeps[0].first_order, whole().d}, carried,
              mover_lss_[mover]);
-    const double stray = mover_stray_[mover] = strays_.inWorld(carried);
+    const double stray = mover_stray_[mover] = strays_.inWorld(carried, mover_lss_[mover]);
     if (frame) {
       boundLss(mover_lss_[mover], margin + stray, box);
       setWholeBox(mover);

@@ -6,6 +6,7 @@
 
 #include "narrowphase/solver/swept_box.h"
 #include "narrowphase/solver/swept_frames.h"
+#include "narrowphase/solver/swept_lss.h"
 #include "narrowphase/tube.h"
 
 namespace fcl_artic {
@@ -22,7 +23,8 @@ class Strays : PartOfSolver {
   /// To be called before inWorld(), when the batch is set.
   void begin();
   /// Bounds what a link strays against the world, over the batch.
-  double inWorld(const Body& link);
+  /// @param swept  its line swept sphere over the batch.
+  double inWorld(const Body& link, const SweptLss& swept);
   /// Bounds what two links stray against each other, whatever the motion.
   /// @param in_world  inWorld() of both, summed.
   double ofLinks(int link_pair, double in_world) const {
@@ -365,30 +367,28 @@ inline const Strays::Form& Strays::formOf(int step) {
 /// By Cauchy and Schwarz, the sum of all s_i r_i, with the distances r_i of a point from the axes, is at most the root
 /// of (sum of s_i) (sum of s_i r_i^2). The latter is a quadratic form of the point, which the steps add up to: so it
 /// costs each link the same, however long its chain is.
-inline double Strays::inWorld(const Body& link) {
+inline double Strays::inWorld(const Body& link, const SweptLss& swept) {
   if (!any()) return 0;
-  const Outline outline = outlineOf(link, link.placement);
   double of_steps = 0;
   if (link.step >= 0 && problem().sweeps[0].strays) {
-    const FrameLanes& frame = frames_.of(0, link.step);
     const StepBounds& last = frames_.bounds(0, link.step);
     const Form& form = formOf(link.step);
     Lanes square(0.0);
-    for (const Vec3& end : outline.end) {
-      const Vec3Lanes x = frame.o + frame.R * end;
+    for (const PointLanes& end : swept.end) {
+      const Vec3Lanes& x = end.c[0];  // in the middle of a lane
       const Vec3Lanes qx(dot(form.q[0], x), dot(form.q[1], x), dot(form.q[2], x));
       square = max(square, dot(x, qx - form.b * Lanes(2.0)) + form.c);
     }
-    const double lever = last.length + outline.reach, sizes = lever + outline.radius;
+    const double radius = link.lss[6], lever = last.length + swept.reach, sizes = lever + radius;
     // Rounding of the form: its terms are at most strays * sizes^2 each, made of frames of these errors.
-    const double ulps = last.ulps + link.placement.ulps + kPoseUlps + 64 * form.count;
+    const double ulps = last.ulps + kPoseUlps + 64 * form.count;
     const double error = 16 * kUlp * ulps * form.strays * sizes * sizes + kLeastLength;
     const double root = sqrt(form.strays * (maxLane(square) + error));
     // As distance() has it, summed over the steps; the last term is the rounding of these differences.
     const double speeds = form.strays * (last.rates.a * lever + last.slide_rate) - lever * form.rates -
                           last.rates.a * form.lengths + form.levers - form.slide_rates;
     const double rounding = 64 * form.count * kUlp * form.strays * (last.rates.a * lever + last.slide_rate);
-    of_steps = root + form.strays * outline.radius + form.slides + frames_.batch().d * (speeds + rounding);
+    of_steps = root + form.strays * radius + form.slides + frames_.batch().d * (speeds + rounding);
   }
   return (of_steps + ofBody(link, frames_.batch().finish()) + ofBase(link)) * (1 + 32 * kUlp);
 }

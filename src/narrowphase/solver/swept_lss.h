@@ -24,6 +24,7 @@ struct SweptLss {
   PointLanes end[2];
   Lanes per_square;   ///< one over the segment's squared length
   double radius;      ///< remainder and rounding in it
+  double reach;       ///< of the ends from the frame of a link's step
   double sizes;       ///< of all numbers that the ends are made of
   double ulps, rate;  ///< what a difference with something else rounds by: roundingPart(ulps, rate)
 
@@ -51,6 +52,7 @@ FCL_ARTIC_INLINE void sweepLss(const FrameMotion& motion, const Body& body, Swep
     s.end[end] = {{spread(p), spread(Vec3(0, 0, 0)), spread(Vec3(0, 0, 0))}};
   }
   s.measureSegment();
+  s.reach = reach;
   s.sizes = (f ? b.length + b.D1 * motion.d : 0) + reach + s.radius;
   s.ulps = f ? b.ulps : 0;
   s.rate = f ? b.rounding_rate * motion.d : 0;
