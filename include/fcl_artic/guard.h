@@ -63,10 +63,12 @@ struct GuardOptions : Scope {
   double most_age = 0.1;
   /// m, at least 0: margin of pairs that have none of their own, and what is added to all (Tolerances).
   double margin = 0, added_margin = 0;
-  /// Speeds that are tried between the slowest and the full one.
+  /// Most speeds that are tried between the slowest and the full one. They end as soon as two differ by no more than
+  /// 2^-tries.
   int tries = 5;
-  /// Most tests of one answer, all speeds together; 0: no limit. Where it ends, nothing is certified.
-  std::uint64_t work_budget = 100000;
+  /// Most tests of one answer, all speeds together; 0: no limit. If it ends, only the way that is proven by then
+  /// counts.
+  std::uint64_t work_budget = 20000;
 };
 
 /// Why an answer is no larger.

@@ -127,6 +127,20 @@ TEST(GuardEdges, ABudgetThatEndsBetweenTwoPiecesIsNotFree) {
   }
   EXPECT_GT(spent, 10);
   EXPECT_GT(between, 0);
+
+  // A stop from full speed takes 5 m. If the budget ends on the way, what was proven by then is enough for less.
+  options.deceleration = VectorXd::Constant(1, 0.1);
+  int slower = 0;
+  for (std::uint64_t budget = 1; budget <= 400; ++budget) {
+    options.work_budget = budget;
+    Guard guard(cart.tree, options);
+    guard.follow(trajectory);
+    GuardAnswer answer;
+    guard.ask(*scene, 0, 0.5, 0, answer);
+    EXPECT_LT(answer.stop_at, 3.3) << budget;
+    slower += answer.reason == GuardReason::budget && answer.certified && answer.speed > 0;
+  }
+  EXPECT_GT(slower, 10);
 }
 
 TEST(GuardEdges, BrakingIsThatOfAllOfTheRange) {
