@@ -92,6 +92,7 @@ struct Guard::Impl {
   void settleBraking(std::initializer_list<double> speeds);
   double slowest() const { return std::max(0.0, path_speed - braking * options.period); }
   bool certify(const Plan& plan);
+  std::optional<Plan> fastestProven(GuardAnswer& answer);
   bool limitStandsStill() const;
   std::optional<Plan> fastestBefore(double time, const Plan& slowest, const Plan& refused) const;
   double stopOf(const Plan& plan) const;
@@ -328,6 +329,46 @@ std::optional<Guard::Impl::Plan> Guard::Impl::fastestBefore(double time, const P
   return best;
 }
 
+/// The fastest plan that is proven free; none: not even the slowest is. `reason` then says why it is no faster, and so
+/// do the answer's bodies.
+std::optional<Guard::Impl::Plan> Guard::Impl::fastestProven(GuardAnswer& answer) {
+  const auto isProven = [&](const Plan& plan) {
+    const GuardReason before = std::exchange(reason, GuardReason::none);
+    if (certify(plan)) {
+      reason = before;
+      return true;
+    }
+    namePair(answer.body1, answer.body2);
+    answer.near_at = found_at;
+    return false;
+  };
+  const Plan full = planAt(1), slowest = planAt(this->slowest());
+  if (isProven(full)) return full;
+  std::optional<Plan> proven;
+  double high = 1;  // nothing faster is worth a try
+  const auto learnFrom = [&](const Plan& refused, const Plan& from) {
+    high = refused.speed;
+    if (const auto sooner = fastestBefore(free_until, from, refused)) proven = sooner;
+    if (!limitStandsStill()) return;
+    const auto before = fastestBefore(found_at, from, refused);
+    high = before ? before->speed : from.speed;
+  };
+  if (options.tries > 0) learnFrom(full, slowest);
+  if (!proven && reason == GuardReason::near && isProven(slowest)) proven = slowest;
+  const double finest = std::ldexp(1.0, -options.tries);
+  for (int i = 0; proven && i < options.tries && high - proven->speed > finest; ++i) {
+    const Plan between = planAt(0.5 * (proven->speed + high));
+    if (isProven(between)) {
+      proven = between;
+    } else if (reason == GuardReason::near) {
+      learnFrom(between, *proven);
+    } else {
+      break;
+    }
+  }
+  return proven;
+}
+
 Guard::Guard(std::shared_ptr<const KinematicTree> tree, GuardOptions options) {
   if (!tree) throw std::invalid_argument("Guard: the kinematic tree is null");
   if (options.deceleration.size() != tree->dof()) {
@@ -372,54 +413,13 @@ void Guard::ask(const LiveScene::Snapshot& scene, double now, double path_time, 
   guard.settleBraking({1, path_speed});
   answer.valid_until = noLaterThan(now, guard.options.reaction + guard.options.period);
   answer.near_at = guard.end();
-  const GuardReason seen = guard.reason;
-  Impl::Plan chosen = guard.planAt(guard.slowest());
-  GuardReason why = seen;
-  const auto certify = [&](const Impl::Plan& plan) {
-    guard.reason = GuardReason::none;
-    if (guard.certify(plan)) return true;
-    why = guard.reason;
-    guard.namePair(answer.body1, answer.body2);
-    answer.near_at = guard.found_at;
-    return false;
-  };
-  if (seen == GuardReason::none) {
-    const Impl::Plan full = guard.planAt(1);
-    const bool graded = guard.options.tries > 0;
-    std::optional<Impl::Plan> proven;
-    double high = 1;  // nothing faster is worth a try
-    const auto learnFrom = [&](const Impl::Plan& refused, const Impl::Plan& slowest) {
-      high = refused.speed;
-      if (const auto sooner = guard.fastestBefore(guard.free_until, slowest, refused)) proven = sooner;
-      if (!guard.limitStandsStill()) return;
-      const auto before = guard.fastestBefore(guard.found_at, slowest, refused);
-      high = before ? before->speed : slowest.speed;
-    };
-    if (certify(full)) {
-      proven = full;
-    } else {
-      if (graded) learnFrom(full, chosen);
-      if (!proven && why == GuardReason::near && certify(chosen)) proven = chosen;
-    }
-    const double finest = std::ldexp(1.0, -guard.options.tries);
-    for (int i = 0; proven && i < guard.options.tries && high - proven->speed > finest; ++i) {
-      const Impl::Plan between = guard.planAt(0.5 * (proven->speed + high));
-      if (certify(between)) {
-        proven = between;
-      } else if (why == GuardReason::near) {
-        learnFrom(between, *proven);
-      } else {
-        break;
-      }
-    }
-    answer.certified = proven.has_value();
-    if (proven) chosen = *proven;
-  }
-  if (!answer.certified) {
-    // The robot stops on what an earlier answer has proven, and as that one said.
-    if (guard.promised_braking) guard.braking = *guard.promised_braking;
-    chosen = guard.planAt(0);
-  }
+  const std::optional<Impl::Plan> proven =
+      guard.reason == GuardReason::none ? guard.fastestProven(answer) : std::nullopt;
+  const GuardReason why = guard.reason;
+  answer.certified = proven.has_value();
+  // Else the robot stops on what an earlier answer has proven, and as that one said.
+  if (!proven && guard.promised_braking) guard.braking = *guard.promised_braking;
+  const Impl::Plan chosen = proven ? *proven : guard.planAt(0);
   answer.speed = chosen.speed;
   answer.reason = answer.speed == 1 && answer.certified ? GuardReason::none : why;
   guard.reason = answer.reason;
