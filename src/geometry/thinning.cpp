@@ -102,7 +102,7 @@ ThinnedBalls thin(const std::vector<Vector3d>& points, const std::vector<double>
     VoxelTable table(points.size() / shares);
     const auto forEachOwn = [&](const auto& act) {
       for (std::size_t i = 0; i < points.size(); ++i) {
-        if (shares == 1 || (hashes[i] >> 40) % shares == s) act(i);
+        if ((hashes[i] >> 40) * shares >> 24 == s) act(i);  // of 24 bits
       }
     };
     forEachOwn([&](std::size_t i) {
