@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Large obstacles, into which stage 1 goes, against the same scene cut into obstacles of one piece each, and against
-// FCL at single poses. FCL_ARTIC_LARGE_CASES and FCL_ARTIC_LARGE_SEED in the environment ask for more and for others.
+// Large obstacles, into which stage 1 goes, against the same scene cut into obstacles of one piece each, against the
+// same motion seen from a limb, to which the large body is carried, and against FCL at single poses.
+// FCL_ARTIC_LARGE_CASES and FCL_ARTIC_LARGE_SEED in the environment ask for more and for others.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -357,6 +358,24 @@ struct Way {
     }
     return result;
   }
+  /// Sets the motion or the trajectory.
+  void goThrough(const KinematicTree& tree, const std::vector<VectorXd>& configurations) {
+    corners = configurations;
+    const std::size_t pieces = corners.size() - 1;
+    trajectory.reset();
+    motion.reset();
+    if (pieces > 1) {
+      std::vector<double> times;
+      for (std::size_t k = 0; k <= pieces; ++k) times.push_back(static_cast<double>(k));
+      end = times.back();
+      trajectory =
+          std::make_shared<JointTrajectory>(half_angles ? JointTrajectory::tangentHalfAngle(tree, times, corners)
+                                                        : JointTrajectory::linear(tree, times, corners));
+    } else {
+      motion = std::make_shared<JointMotion>(half_angles ? JointMotion::tangentHalfAngle(tree, corners[0], corners[1])
+                                                         : JointMotion::linear(tree, corners[0], corners[1]));
+    }
+  }
   /// @param t  in [0, 1].
   VectorXd at(double t, const std::vector<Joint>& joints) const {
     const std::size_t pieces = corners.size() - 1,
@@ -393,18 +412,8 @@ Way drawWay(Random& random, const World& w) {
     }
     way.corners.push_back(q);
   }
-  if (pieces > 1) {
-    std::vector<double> times;
-    for (int k = 0; k <= pieces; ++k) times.push_back(k);
-    way.end = pieces;
-    way.trajectory = std::make_shared<JointTrajectory>(
-        way.half_angles ? JointTrajectory::tangentHalfAngle(*w.tree, times, way.corners)
-                        : JointTrajectory::linear(*w.tree, times, way.corners));
-  } else {
-    way.motion = std::make_shared<JointMotion>(
-        way.half_angles ? JointMotion::tangentHalfAngle(*w.tree, way.corners[0], way.corners[1])
-                        : JointMotion::linear(*w.tree, way.corners[0], way.corners[1]));
-  }
+  const std::vector<VectorXd> corners = way.corners;
+  way.goThrough(*w.tree, corners);
   return way;
 }
 
@@ -454,6 +463,50 @@ double windingNumber(const Soup& soup, const Vector3d& x) {
   return sum / (4 * 3.14159265358979323846);
 }
 
+/// The same motion seen from a limb: it stands still, as an obstacle or bound to the root, and the joints between it
+/// and the world, the other way round, carry the large body.
+CertifiedResult askCarried(Random& random, const World& w, const Way& way, const Limb& limb, CertifiedRequest request) {
+  std::vector<std::size_t> order;  // joints from the limb's to the world's
+  for (int link = limb.link; link > 0; link = w.parents[static_cast<std::size_t>(link - 1)]) {
+    order.push_back(static_cast<std::size_t>(link - 1));
+  }
+  const auto tree = std::make_shared<KinematicTree>("carrier");
+  tree->addLink("c0");
+  Isometry3d before = Isometry3d::Identity();  // what lies between the joint before and this one
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const Joint& joint = w.joints[order[k]];
+    const std::string name = std::to_string(k + 1);
+    tree->addLink("c" + name);
+    tree->addJoint(makeJoint("j" + name, joint.type, "c" + std::to_string(k), "c" + name, -joint.axis, before));
+    before = joint.origin.inverse();
+  }
+  ArticulatedCollisionManager manager(tree);
+  const bool bound = random.oneIn(2);
+  const auto still = object(limb.measured, bound ? Isometry3d::Identity() : limb.offset);
+  if (bound) {
+    manager.bind("c0", still, limb.offset);
+  } else {
+    manager.registerObject(still, "limb");
+  }
+  const auto large = object(w.large.whole);
+  manager.registerObject(large, "large");
+  manager.attach("c" + std::to_string(order.size()), large, before * w.place);
+  manager.setup();
+  std::vector<VectorXd> corners;
+  for (const VectorXd& corner : way.corners) {
+    VectorXd& q = corners.emplace_back(static_cast<Eigen::Index>(order.size()));
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      q[static_cast<Eigen::Index>(k)] = corner[static_cast<Eigen::Index>(order[k])];
+    }
+  }
+  Way reversed = way;
+  reversed.goThrough(*tree, corners);
+  request.margin = limb.margin;
+  request.added_margin = 0;
+  request.check_self = true;
+  return reversed.ask(manager, request);
+}
+
 std::string text(const CertifiedResult& r) {
   return campaign::format("%s%s [%.9g, %.9g]", toString(r.status), r.certain ? "" : "?", r.t_lower, r.t_upper);
 }
@@ -461,7 +514,12 @@ std::string text(const CertifiedResult& r) {
 class Judge {
  public:
   Judge(campaign::Case& c, const World& w, const Way& way, const CertifiedRequest& request)
-      : case_(c), world_(w), way_(way), request_(request), slack_(w.large.isMesh() ? 1e-9 : 1e-6) {}
+      : case_(c),
+        random_(c.id.seed + 1),
+        world_(w),
+        way_(way),
+        request_(request),
+        slack_(w.large.isMesh() ? 1e-9 : 1e-6) {}
 
   void look() {
     CertifiedRequest request = request_;
@@ -483,6 +541,7 @@ class Judge {
                           all_of_cut =
                               request_.mode == ContactMode::firstOfEveryPair ? b : way_.ask(*world_.cut, request);
     compareEvery(all, all_of_cut);
+    carried(all);
     if (world_.limbs.size() == 1 && ignored.empty() && !request.check_self) {
       request.mode = ContactMode::first;
       const CertifiedResult first = way_.ask(*world_.whole, request);
@@ -590,6 +649,30 @@ class Judge {
     case_.tally.count("deep", deep);  // more than 20 pieces touch the link
     namesPieces(a, b);
   }
+  /// One limb and the body, as seen from the limb.
+  void carried(const CertifiedResult& all) {
+    const Limb& limb = *world_.limbs[static_cast<std::size_t>(random_.below(static_cast<int>(world_.limbs.size())))];
+    const auto is = [&](const auto& other) { return other->name == limb.name; };
+    if (limb.allowed || inside_ || request_.ignore_initial_contact) return;
+    if (std::count_if(world_.limbs.begin(), world_.limbs.end(), is) > 1) return;
+    CertifiedRequest request = request_;
+    const CertifiedResult seen = askCarried(random_, world_, way_, limb, request);
+    const KnownOf of_all = knownOf(all);
+    const auto found = of_all.find(limb.name);
+    const Known known = found == of_all.end() ? Known() : found->second;
+    const std::string words = campaign::format("%s: %d [%.9g, %.9g], carried %s", limb.name.c_str(), known.contacts,
+                                               known.lower, known.upper, text(seen).c_str());
+    if (seen.status == Status::undecided) return fault("carried: undecided", words);
+    case_.tally.count("carried");
+    case_.tally.count("carried, free, left by stage 1", seen.isFree() && seen.statistics.pairs_after_culling > 0);
+    case_.tally.count("carried, contact", seen.status == Status::contact);
+    if ((seen.isFree() && known.certain) || (seen.certain && !known.contacts)) fault("carried: verdicts", words);
+    const double late = 2 * request_.tolerance_time + slack_;
+    const bool any = request.mode == ContactMode::any;
+    if (seen.status == Status::contact && known.certain && !any && seen.t_lower > known.upper + late)
+      fault("carried: brackets", words);
+    if (seen.certain && known.contacts && known.lower > seen.t_upper + late) fault("carried: brackets", words);
+  }
   /// The piece that a proven contact names touches by then.
   void namesPieces(const CertifiedResult& a, const CertifiedResult& b) {
     if (world_.large.kind == Large::cells || request_.ignore_initial_contact) return;
@@ -677,6 +760,7 @@ class Judge {
   }
 
   campaign::Case& case_;
+  Random random_;
   const World& world_;
   const Way& way_;
   CertifiedRequest request_;
@@ -732,6 +816,8 @@ TEST(LargeBodies, AreTheirPieces) {
   EXPECT_GT(all["initial contact ignored"], 0u);
   EXPECT_GT(all["free, left by stage 1"], 0u);
   EXPECT_GT(all["all culled by stage 2"], 0u);
+  EXPECT_GT(all["carried, free, left by stage 1"], 0u);
+  EXPECT_GT(all["carried, contact"], 0u);
 }
 
 /// A ball goes up to a slope: what stage 1 leaves of the slope is searched together, as one pair.

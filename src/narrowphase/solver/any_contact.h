@@ -33,6 +33,7 @@ class AnyContact : PartOfSolver {
         frames_(state.frames),
         motions_(state.motions),
         horizon_(state.horizon),
+        contacts_(state.contacts),
         balls_(balls),
         proofs_(proofs),
         traversal_(traversal) {}
@@ -42,6 +43,8 @@ class AnyContact : PartOfSolver {
     pose_guesses_.clear();
   }
 
+  /// Whether any contact answers the query.
+  bool isWanted() const { return query().any && !query().every_pair && contacts_.watching(); }
   bool tryLikely();
   /// Hulls of a pair overlap, or so it seems, in the middles of these lanes of [0, 1].
   /// @param node_a  the node of body A: the root, or a patch.
@@ -64,6 +67,7 @@ class AnyContact : PartOfSolver {
   SweptFrames& frames_;
   RelativeMotions& motions_;
   Horizon& horizon_;
+  const ContactList& contacts_;
   BallProofs& balls_;
   PoseProofs& proofs_;
   Traversal& traversal_;

@@ -391,7 +391,7 @@ inline void PairSearch::descendIntoPieces(const Buffer<Entry>& open, int begin, 
     if (!e.mask) continue;
     const Seen seen = motions_.of(e.pair, whole());
     bool whole_first = movesFar(seen) && !e.within;
-    if (!whole_first && !e.within && !isLeafPair(e) && haveHulls(e) && (e.a == 0 || (e.mask & 1))) {
+    if (!whole_first && !e.within && !isLeafPair(e) && haveHulls(e) && (e.isWhole() || (e.mask & 1))) {
       GjkResult g;
       const double gap = abs(restingGapOfHulls(seen, e, __builtin_ctz(e.mask), g)) / seen->smallerRadius();
       whole_first = gap <= kBarely;

@@ -14,6 +14,7 @@
 //   Follower         a leaf pair, or two hulls, followed to where they meet
 //   ContactWriter    records the contact found there with its t_lower; its point and normal
 //   AnyContact       poses at which contact is likely
+//   Patches          stage 1 in a large body: the nodes that it leaves
 //   StageOne         stage 1: pairs whose swept bounds meet; stage 2: takes out what advisors prove free
 //   Containment, InitialContacts   solid meshes within each other, and what is ignored at t = 0
 //   PairSearch       the order of the search: by time, then by pair

@@ -46,11 +46,11 @@ class RelativeMotion : PartOfSolver {
   }
   /// B seen from A, as it is evaluated: without what certificates need.
   const RigidLanes& seenFromA() const { return side_[0].m; }
-  /// The way of a point p of B's tree frame as seen from A's tree frame.
+  /// The way of a point p of the moving body's tree frame as seen from the other's, in side(s).
   /// @param[out] x  its quadratic.
   /// @return radius: at each time the point is no farther than this from x.
-  double seePoint(const Vec3& p, PointLanes& x) const {
-    const RigidLanes& m = side_[0].m;
+  double seePoint(int s, const Vec3& p, PointLanes& x) {
+    const RigidLanes& m = s ? side(1).m : side_[0].m;
     for (int order = 0; order < 3; ++order) x.c[order] = mulAdd(m.R[order], spread(p), m.c[order]);
     // The pad is for points no farther out than the bodies' own; it scales with sizes.
     const double reach = norm(p) * (1 + 8 * kUlp), sizes = max(a().extent + b().extent, kLeastLength);

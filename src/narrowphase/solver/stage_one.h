@@ -4,37 +4,14 @@
 // nodes out of these that advisors prove free.
 #pragma once
 
-#include "narrowphase/solver/any_contact.h"
-#include "narrowphase/solver/swept_lss.h"
+#include "narrowphase/solver/patches.h"
 
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// Asks for an object's cache lines before they are needed.
-template <class T>
-FCL_ARTIC_INLINE void prefetch(const T* object) {
-  for (unsigned i = 0; i < sizeof(T); i += 64) __builtin_prefetch(reinterpret_cast<const char*>(object) + i);
-}
-
-/// Stage 1 divides nodes of a large body that are larger than this part of the radius of the link's line swept sphere.
-/// Measured, a Panda amid 10^4 and 9 * 10^4 triangles, 10^5 and 10^6 points: 1 to 2 are alike. From 4 on free motions
-/// take longer, up to 4 times; below 0.4 contacts do, as a link meets many nodes at once.
-constexpr double kPatchSize = 1;
-
-/// Maximum number of a large body's upper nodes that are looked at for one link; what is below the others is left to
-/// the search as it is. Boxes far from the origin are no smaller than a float's rounding: without a bound each piece of
-/// such a body would be a patch.
-constexpr int kMaxUpperNodes = 128;
-
 /// An obstacle, and the lanes in which its box meets that of a mover.
 struct BoxHit {
   std::int32_t obstacle;
-  unsigned mask;
-};
-
-/// A large body's upper node that is to be looked at, and the lanes in which its box meets that of a mover.
-struct OpenUpper {
-  std::int32_t upper, node;  ///< the same node, of the upper levels and of the tree
   unsigned mask;
 };
 
@@ -47,7 +24,8 @@ class StageOne : PartOfSolver {
         motions_(state.motions),
         horizon_(state.horizon),
         contacts_(state.contacts),
-        any_(any) {}
+        any_(any),
+        patches_(state, any, directions_) {}
 
   /// Stage 1: appends to `open` the pairs whose swept bounds meet, with the lanes in which they meet.
   void cull(Buffer<Entry>& open);
@@ -66,8 +44,6 @@ class StageOne : PartOfSolver {
   SweptBox wholeBox(int mover) const;
   void meetLinks();
   void cullObstacles(int mover, Buffer<Entry>& open);
-  void cullPatches(const Entry& large, double margin, const TreeView& tree, const SweptLss& lss, Buffer<Entry>& open);
-  void openPatch(const Entry& patch, double radius, const NearestToBox& nearest, Buffer<Entry>& open);
   void cullLinks(Buffer<Entry>& open);
   /// If a link's line swept sphere and an obstacle are farther apart than this, their bodies are more than the pair's
   /// margin apart in all of the tube.
@@ -78,10 +54,10 @@ class StageOne : PartOfSolver {
   void expectContact(PairId pair, int mover, const engine::StillBounds& obstacle, unsigned mask,
                      const NearestToBox& nearest);
   void sweptInWorld(int mover, engine::SweptLink* parts) const;
-  void sweepInPartner(PairId pair, const double* lss, SweptLss& s);
+  void sweepInPartner(PairId pair, Patches::Large partner, const double* lss, SweptLss& s);
+  bool enterCarried(PairId pair, unsigned mask, const double* lss_a, Buffer<Entry>& open);
   void sweptInPartner(PairId pair, const double* lss, engine::SweptLink* parts);
   void takeAdvice(const engine::Advisor& advisor, Buffer<Entry>& open);
-  bool looksForAny() const { return query().any && !query().every_pair && contacts_.watching(); }
 
   SweptFrames& frames_;
   Strays strays_;
@@ -97,10 +73,10 @@ class StageOne : PartOfSolver {
   Buffer<double> mover_stray_;              ///< of links, against the world, m
   Buffer<BoxHit> met_;
   Buffer<std::int32_t> open_nodes_;
-  Buffer<OpenUpper> open_upper_;
   Buffer<engine::SweptLink> swept_links_;
   Buffer<engine::CullCandidate> candidates_;
   Buffer<Vec3Lanes> directions_;  ///< of pairs of links and still obstacles (Entry::direction)
+  Patches patches_;
 };
 
 /// A mover's line swept sphere over [0, 1], and its box in the world (Redon 2004, Section 4). For a moving obstacle
@@ -126,14 +102,6 @@ inline void StageOne::sweepMover(int mover) {
     box.hi[k] = narrowUp(Lanes(carried.hi[k] + around));
   }
   setWholeBox(mover);
-}
-
-/// Ends of a box that holds those of the parts. (A part may have overflowed to NaN. The least of it and others does not
-/// hide that: the radius is made of bounds for all parts, and is infinite then. So the others reach to infinity.)
-inline void endsOfWhole(const SweptBox& box, float* ends) {
-  FloatLanes parts[6];
-  __builtin_memcpy(parts, &box, sizeof parts);
-  outerLanes(parts, ends);
 }
 
 /// Sets a mover's box over [0, 1].
@@ -200,13 +168,6 @@ inline unsigned StageOne::lssMayTouch(int mover, int obstacle_number, unsigned m
   return mask;
 }
 
-/// The one of some lanes in which a segment is nearest; the middle one of several in which it is as near.
-inline int nearestLane(Lanes square, unsigned lanes) {
-  double least = square[__builtin_ctz(lanes)];
-  for (int k = 0; k < kLanes; ++k) least = lanes >> k & 1 ? min(least, square[k]) : least;
-  return middleLane(lanes & ~greater(square, Lanes(least)));
-}
-
 /// If a line swept sphere is deep in a solid, contact is suspected there, and later lanes are put off. If any contact
 /// will do, it is looked for at once instead; poses are kept as guesses if the sphere's segment is very near the solid.
 inline void StageOne::expectContact(PairId pair, int mover, const engine::StillBounds& obstacle, unsigned mask,
@@ -223,88 +184,32 @@ inline void StageOne::expectContact(PairId pair, int mover, const engine::StillB
   if (const unsigned lanes = nearer(kVeryDeep)) any_.guessOverlap(pair, lanes);
 }
 
-/// Goes from the upper levels of a large body's tree down to *patches*: nodes no larger than the link, or without upper
-/// nodes. The boxes of eight children are compared at once with that of the line swept sphere over [0, 1], then with
-/// those of its parts, in the body's tree frame. All that is left out is proven apart: so is all that is below it.
-/// @param large  the pair and the lanes that are left of it.
-/// @param lss  the link's, as seen from the tree's frame.
-inline void StageOne::cullPatches(const Entry& large, double margin, const TreeView& tree, const SweptLss& lss,
-                                  Buffer<Entry>& all_open) {
-  const PairId pair = large.pair;
-  SweptBox parts;
-  boundLss(lss, margin, parts);
-  float ends[6];
-  endsOfWhole(parts, ends);
-  const SweptBox whole = spreadBox(ends, ends + 3);
-  const double size = kPatchSize * (lss.radius + margin);
-  const int first = all_open.size();
-  const auto open = [&](int node, unsigned lanes) {
-    NearestToBox nearest;
-    lanes &= ~certainlyApart(lss, boxOfNode(tree.nodes[node]), OwnFrame(), margin, nearest);
-    if (lanes) openPatch({pair, node, 0, lanes}, lss.radius, nearest, all_open);
-  };
-  open_upper_.clear();
-  open_upper_.push({0, 0, large.mask});
-  for (int i = 0; i < open_upper_.size() && !horizon_.mustEnd(); ++i) {
-    const OpenUpper at = open_upper_[i];
-    ++statistics().node_tests;
-    if (i >= kMaxUpperNodes) {
-      open(at.node, at.mask);
-      continue;
-    }
-    const engine::UpperNode& upper = tree.upper[at.upper];
-    for (unsigned left = kAllLanes & ~apart(whole, load(upper.boxes)); left; left &= left - 1) {
-      const int child = __builtin_ctz(left);
-      const std::int32_t node = upper.node[child];
-      const unsigned met = node < 0 ? 0 : at.mask & ~apart(parts, spreadBox(upper.boxes, child));
-      if (!met) continue;
-      const std::int32_t below = upper.upper[child];
-      if (below >= 0 && tree.nodes[node].radius > size) {
-        open_upper_.push({below, node, met});
-        prefetch(tree.upper + below);
-      } else {
-        open(node, met);
-      }
-    }
-  }
-  if (!looksForAny()) return;
-  int best = -1;
-  for (int i = first; i < all_open.size(); ++i) {
-    if (all_open[i].deepest >= 0 && (best < 0 || all_open[i].nearness < all_open[best].nearness)) best = i;
-  }
-  if (best >= 0 && !any_.tryPatch(all_open[best])) all_open[best].deepest = -1;  // it is not tried again
-}
-
-/// Appends a node of a large body. If the link is deep in it, contact is suspected there, or, if any contact will do,
-/// expected.
-/// @param radius  of the link's line swept sphere.
-inline void StageOne::openPatch(const Entry& patch, double radius, const NearestToBox& nearest, Buffer<Entry>& open) {
-  const unsigned deep = patch.mask & ~greater(nearest.square, Lanes(kDeep * kDeep * radius * radius));
-  Entry& entry = open.grow() = patch;
-  entry.deep = deep != 0;
-  entry.direction = directions_.size();
-  directions_.push(nearest.direction);
-  if (!deep || query().every_pair || !contacts_.watching()) return;
-  if (!query().any) return horizon_.suspect(whole().at[__builtin_ctz(deep)]);
-  const int lane = nearestLane(nearest.square, deep);
-  entry.deepest = static_cast<std::int8_t>(lane);
-  entry.nearness = static_cast<float>(sqrt(nearest.square[lane]) / radius);
-}
-
-/// The line swept sphere of the link B of a pair of two bodies that move, seen from A's tree frame, where A stands
-/// still. All that the motion leaves out or rounds is in the radius, and so is all by which both stray.
-/// @param lss  in B's tree frame.
-inline void StageOne::sweepInPartner(PairId pair, const double* lss, SweptLss& s) {
+/// The line swept sphere of one body of a pair as seen from its partner's tree frame. All that the motion leaves out or
+/// rounds is in the radius, and so is all by which both stray.
+/// @param lss  in the body's own tree frame.
+inline void StageOne::sweepInPartner(PairId pair, Patches::Large partner, const double* lss, SweptLss& s) {
   const Seen seen = motions_.of(pair, whole());
   s.radius = s.ulps = s.rate = 0;
   Lanes sizes(0.0);
   for (int end = 0; end < 2; ++end) {
     const Vec3 p(lss + 3 * end);
-    s.radius = max(s.radius, lss[6] + seen->stray() + seen->seePoint(p, s.end[end]));
+    s.radius =
+        max(s.radius, lss[6] + seen->stray() + seen->seePoint(partner == Patches::Large::a ? 0 : 1, p, s.end[end]));
     for (const Vec3Lanes& c : s.end[end].c) sizes = sizes + abs(c[0]) + abs(c[1]) + abs(c[2]);
   }
   s.measureSegment();
   s.sizes = maxLane(sizes) + s.radius;
+}
+
+/// Goes into the body B of a pair, if A is small against it.
+/// @param lss_a  A's line swept sphere, in its tree frame.
+inline bool StageOne::enterCarried(PairId pair, unsigned mask, const double* lss_a, Buffer<Entry>& open) {
+  const TreeView& tree = *body(problem().parts(pair).b).tree;
+  if (!(2 * lss_a[6] < tree.nodes[0].radius)) return false;
+  SweptLss seen;
+  sweepInPartner(pair, Patches::Large::b, lss_a, seen);
+  patches_.cull({pair, 0, 0, mask}, Patches::Large::b, query().margins.of(pair), seen, open);
+  return true;
 }
 
 inline void StageOne::cullObstacles(int mover, Buffer<Entry>& open) {
@@ -316,12 +221,17 @@ inline void StageOne::cullObstacles(int mover, Buffer<Entry>& open) {
     if (obstacle.entered) {
       SweptLss seen;
       seeFrom(obstacle.inverse, mover_lss_[mover], seen);
-      cullPatches({pair, 0, 0, met[i].mask}, apartFromObstacle(pair, mover, met[i].obstacle), *obstacle.tree, seen,
-                  open);
+      patches_.cull({pair, 0, 0, met[i].mask}, Patches::Large::a, apartFromObstacle(pair, mover, met[i].obstacle), seen,
+                    open);
       continue;
     }
     Vec3Lanes direction;
     if (const unsigned left = lssMayTouch(mover, met[i].obstacle, met[i].mask, direction)) {
+      if (body(problem().movers[mover]).tree->upper) {
+        double lss[7];
+        lssOfBox(obstacle.box, lss);
+        if (enterCarried(pair, left, lss, open)) continue;
+      }
       Entry& entry = open.grow() = {pair, 0, 0, left};
       entry.direction = directions_.size();
       directions_.push(direction);
@@ -349,7 +259,7 @@ inline void StageOne::meetLinks() {
 
 /// Pairs of movers, also of those that are obstacles. Pairs that advisors have proven free are left out.
 inline void StageOne::cullLinks(Buffer<Entry>& open) {
-  const bool any = looksForAny();
+  const bool any = any_.isWanted();
   const std::uint8_t* free[Query::kMaxAdvisors];
   const engine::Advisor* advisors[Query::kMaxAdvisors];  // those that are asked of single pairs
   int num_free = 0, num_advisors = 0;
@@ -384,8 +294,12 @@ inline void StageOne::cullLinks(Buffer<Entry>& open) {
     const TreeView& tree = *body(bodies.a).tree;
     if (tree.upper && body(bodies.b).tree_lss) {
       SweptLss seen;
-      sweepInPartner(pair, body(bodies.b).tree_lss, seen);
-      return cullPatches({pair, 0, 0, mask}, query().margins.of(pair), tree, seen, open);
+      sweepInPartner(pair, Patches::Large::a, body(bodies.b).tree_lss, seen);
+      return patches_.cull({pair, 0, 0, mask}, Patches::Large::a, query().margins.of(pair), seen, open);
+    }
+    if (body(bodies.b).tree->upper && body(bodies.a).tree_lss &&
+        enterCarried(pair, mask, body(bodies.a).tree_lss, open)) {
+      return;
     }
     open.push({pair, 0, 0, mask});
   };
@@ -408,7 +322,7 @@ inline void StageOne::cull(Buffer<Entry>& open) {
   if (check_scene) {
     statistics().pairs += static_cast<std::uint64_t>(problem().num_scene_pairs - problem().num_scene_allowed);
   }
-  if (looksForAny() && query().num_advisors && any_.tryLikely()) return;
+  if (any_.isWanted() && query().num_advisors && any_.tryLikely()) return;
   for (int m = 0; m < problem().num_movers && !horizon_.isOver(); ++m) {
     sweepMover(m);
     if (check_scene && task_.isLink(m)) cullObstacles(m, open);
@@ -438,7 +352,7 @@ inline void StageOne::sweptInWorld(int mover, engine::SweptLink* parts) const {
 /// @param lss  in B's tree frame.
 inline void StageOne::sweptInPartner(PairId pair, const double* lss, engine::SweptLink* parts) {
   SweptLss s;
-  sweepInPartner(pair, lss, s);
+  sweepInPartner(pair, Patches::Large::a, lss, s);
   for (int lane = 0; lane < kLanes; ++lane) sweptOver(lane, s.end, s.radius, parts[lane]);
 }
 

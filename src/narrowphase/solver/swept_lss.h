@@ -82,6 +82,14 @@ FCL_ARTIC_INLINE void boundLss(const SweptLss& s, double margin, SweptBox& box) 
   }
 }
 
+/// Ends of a box that holds those of the parts. (A part may have overflowed to NaN. The least of it and others does not
+/// hide that: the radius is made of bounds for all parts, and is infinite then. So the others reach to infinity.)
+inline void endsOfWhole(const SweptBox& box, float* ends) {
+  FloatLanes parts[6];
+  __builtin_memcpy(parts, &box, sizeof parts);
+  outerLanes(parts, ends);
+}
+
 /// A line swept sphere over one lane: both ends' Bernstein points.
 inline void sweptOver(int lane, const PointLanes* ends, double radius, engine::SweptLink& part) {
   for (int end = 0; end < 2; ++end) {
@@ -123,6 +131,19 @@ FCL_ARTIC_INLINE CoreBox boxOfNode(const Node& node) {
   doublesOf(node.hi).store(box.hi);
   box.radius = 0;
   return box;
+}
+
+/// A line swept sphere that holds a box, along the box's longest axis. (The ends round: the radius grows by that.)
+inline void lssOfBox(const CoreBox& box, double* lss) {
+  const Vec3 lo(box.lo), hi(box.hi), middle = (lo + hi) * 0.5;
+  Vec3 across = (hi - lo) * (0.5 * (1 + 4 * kUlp));
+  const int along = across[0] > across[1] && across[0] > across[2] ? 0 : across[1] > across[2] ? 1 : 2;
+  middle.store(lss);
+  middle.store(lss + 3);
+  lss[along] -= across[along];
+  lss[3 + along] += across[along];
+  across[along] = 0;
+  lss[6] = (norm(across) + box.radius + 4 * kUlp * (norm(lo) + norm(hi))) * (1 + 8 * kUlp);
 }
 
 /// The world as seen from a body's tree frame.
