@@ -188,27 +188,64 @@ Json clearanceJson(const KinematicTree& tree, const Clearance& c) {
   return out;
 }
 
+Json poseJson(const Eigen::Isometry3d& M) {
+  const Eigen::Quaterniond rotation(M.linear());
+  return {{"position", vectorJson(M.translation())},
+          {"quaternion_xyzw", {rotation.x(), rotation.y(), rotation.z(), rotation.w()}}};
+}
+
+bool isInPlace(const Eigen::Isometry3d& deviation) {
+  return deviation.matrix() == Eigen::Matrix4d::Identity();
+}
+
+/// Adds the configuration and the deviations, each null where there is none.
+void addWitness(const KinematicTree& tree, const ToleranceWitness& witness, Json& out) {
+  out["q_witness"] = witness.q_witness.size() > 0 ? valuesJson(tree, witness.q_witness) : Json();
+  const auto add = [&](const char* key, const Eigen::Isometry3d& deviation) {
+    out[key] = isInPlace(deviation) ? Json() : poseJson(deviation);
+  };
+  add("base_deviation", witness.base_deviation);
+  add("deviation1", witness.deviation1);
+  add("deviation2", witness.deviation2);
+}
+
 Json toleranceLeftJson(const KinematicTree& tree, const ToleranceLeft& left) {
   Json out = foundJson(tree, left);
   out["certain"] = left.certain;
-  out["q_witness"] = left.q_witness.size() > 0 ? valuesJson(tree, left.q_witness) : Json();
+  addWitness(tree, left, out);
   out["within_accuracy"] = left.within_accuracy;
   return out;
 }
 
+/// "t = 0.5: joint = 1; the base is off by (0.001, 0, 0) m and 0.05 deg".
+std::string witnessText(const KinematicTree& tree, const CertifiedContact& c) {
+  std::string text = fmt::format("within the tolerances, at t = {:.12g}: {}", c.t_upper, jointsText(tree, c.q_witness));
+  const auto add = [&](const std::string& who, const Eigen::Isometry3d& deviation) {
+    if (isInPlace(deviation)) return;
+    const double angle = Eigen::AngleAxisd(deviation.linear()).angle() / kRadiansPerDegree;
+    text += fmt::format("; {} is off by {} m", who, placeText(deviation.translation(), 6));
+    if (angle > 0) text += fmt::format(" and {:.6g} deg", angle);
+  };
+  add("the base", c.base_deviation);
+  add(fmt::format("'{}'", c.body1.name), c.deviation1);
+  add(fmt::format("'{}'", c.body2.name), c.deviation2);
+  return text;
+}
+
 Json contactJson(const KinematicTree& tree, const CertifiedContact& c) {
-  return {{"body1", bodyJson(tree, c.body1, c.b1)},
-          {"body2", bodyJson(tree, c.body2, c.b2)},
-          {"t_lower", c.t_lower},
-          {"t_upper", c.t_upper},
-          {"certain", c.certain},
-          {"point", vectorJson(c.point)},
-          {"normal", vectorJson(c.normal)},
-          {"nearest1", vectorJson(c.nearest1)},
-          {"nearest2", vectorJson(c.nearest2)},
-          {"approach_speed", c.approach_speed},
-          {"feature", toString(c.feature)},
-          {"q_witness", c.q_witness.size() > 0 ? valuesJson(tree, c.q_witness) : Json()}};
+  Json out{{"body1", bodyJson(tree, c.body1, c.b1)},
+           {"body2", bodyJson(tree, c.body2, c.b2)},
+           {"t_lower", c.t_lower},
+           {"t_upper", c.t_upper},
+           {"certain", c.certain},
+           {"point", vectorJson(c.point)},
+           {"normal", vectorJson(c.normal)},
+           {"nearest1", vectorJson(c.nearest1)},
+           {"nearest2", vectorJson(c.nearest2)},
+           {"approach_speed", c.approach_speed},
+           {"feature", toString(c.feature)}};
+  addWitness(tree, c, out);
+  return out;
 }
 
 Json neighboursJson(const CertifiedResult& result) {
@@ -223,10 +260,7 @@ Json posesJson(const Report& r) {
   std::vector<Eigen::Isometry3d> at_lower;
   r.tree.forwardKinematics(r.configuration(r.result.t_lower), at_lower);
   for (LinkId link = 0; link < r.tree.numLinks(); ++link) {
-    const Eigen::Isometry3d& M_0 = at_lower[static_cast<std::size_t>(link)];
-    const Eigen::Quaterniond rotation(M_0.linear());
-    out[r.tree.linkName(link)] = {{"position", vectorJson(M_0.translation())},
-                                  {"quaternion_xyzw", {rotation.x(), rotation.y(), rotation.z(), rotation.w()}}};
+    out[r.tree.linkName(link)] = poseJson(at_lower[static_cast<std::size_t>(link)]);
   }
   return out;
 }
@@ -313,10 +347,7 @@ std::string textReport(const Report& r) {
   for (std::size_t i = 0; i < result.contacts.size(); ++i) {
     if (several) text += fmt::format(" contact {} of {}\n", i + 1, result.contacts.size());
     text += contactText(r.tree, result.contacts[i]);
-    if (const Eigen::VectorXd& q = result.contacts[i].q_witness; q.size() > 0) {
-      text += entry("touch", fmt::format("within the tolerances, at t = {:.12g}: {}", result.contacts[i].t_upper,
-                                         jointsText(r.tree, q)));
-    }
+    if (result.contacts[i].q_witness.size() > 0) text += entry("touch", witnessText(r.tree, result.contacts[i]));
   }
   if (r.clearance) text += entry("clearance", clearanceText(r.tree, *r.clearance));
   if (r.tolerance_left) text += entry("left", toleranceLeftText(r.tree, *r.tolerance_left));

@@ -223,7 +223,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   ///
   /// Where a joint, the base or an object has a tolerance, `free` holds for every path within all tolerances
   /// (doc/PROMISE.md, "Tolerances"). So do all other answers of this manager, clearance() too.
-  /// CertifiedContact::q_witness shows a contact within them. Certificates state them (doc/TUBES.md).
+  /// CertifiedContact::q_witness and the deviations beside it show a contact within them. Certificates state them
+  /// (doc/TUBES.md).
   /// Method::redon2004 does not know them: it throws std::invalid_argument.
   /// @throws std::invalid_argument: a number that is negative or not finite.
   void setJointTolerances(const JointTolerance& all);
@@ -243,7 +244,7 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void setObjectTolerance(const std::string& name, const PoseTolerance& tolerance);
   /// Says how fast an obstacle may move by itself, in any direction, as a person does: `free` then holds wherever it
   /// goes at up to that speed. Its pose tolerance is added. (For an obstacle that moves: beside its motion. For an
-  /// attached object: beside the link.) Queries with certificates refuse speeds. Needs setup().
+  /// attached object: beside the link.) Certificates state it (doc/TUBES.md). Needs setup().
   /// @param name  of the object; its speed goes when it is unregistered.
   /// @throws std::invalid_argument: no such obstacle or attached object; a speed negative or not finite, a time not
   ///   finite.

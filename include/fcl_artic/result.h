@@ -17,6 +17,7 @@
 #include "fcl_artic/export.h"
 #include "fcl_artic/kinematic_tree.h"
 #include "fcl_artic/statistics.h"
+#include "fcl_artic/tube.h"
 
 namespace fcl_artic {
 
@@ -50,7 +51,7 @@ struct BodyRef {
 };
 
 /// One contact. As in FCL, `normal` points from body 1 to body 2. If a link and an obstacle touch, the link is body 1.
-struct CertifiedContact {
+struct CertifiedContact : ToleranceWitness {
   /// The bodies that touch.
   BodyRef body1, body2;
   /// Geometry of body 1; the caller's.
@@ -88,10 +89,6 @@ struct CertifiedContact {
   /// Whether contact of these two pieces at or before t_upper is proven. If not, it can't be excluded within the
   /// tolerances.
   bool certain = false;
-  /// With tolerances (ArticulatedCollisionManager::setJointTolerances()), a configuration within them at t_upper. There
-  /// contact of the two bodies is proven. It is the motion's own if they touch at that. It is empty if the contact is
-  /// not certain, and without tolerances.
-  Eigen::VectorXd q_witness;
 
   /// Returns this contact as FCL's own type. At first contact nothing has been penetrated: the depth is 0.
   fcl::Contactd toFcl() const {

@@ -35,7 +35,7 @@ struct ToleranceLeftRequest : Tolerances, Scope {
 
 /// How many times all tolerances of a manager may be as large, so that the motion is still free. Each joint, the base
 /// and each object then has its tolerance times one factor. It is found by queries with such factors.
-struct ToleranceLeft {
+struct ToleranceLeft : ToleranceWitness {
   /// Proven: with all tolerances times this, and so with any smaller ones, every path is free. It is 0 if nothing
   /// larger is proven.
   double lower = 0;
@@ -52,11 +52,9 @@ struct ToleranceLeft {
   double time = 0;
   /// The pair that limits the factor; without names if `upper` is infinite.
   BodyRef body1, body2;
-  /// Whether the two are proven to touch, or to be within their margin, at `time`: at the configuration `q_witness`,
-  /// which is within the tolerances times `upper`.
+  /// Whether the two are proven to touch, or to be within their margin, at `time`: at `q_witness`, within the
+  /// tolerances times `upper`. (It is empty, too, if the motion itself touches: `upper` is 0.)
   bool certain = false;
-  /// tree().dof() joint values, rad or m; empty if not `certain`, and if the motion itself touches (`upper` is 0).
-  Eigen::VectorXd q_witness;
   /// Whether upper - lower is within the wanted accuracy, or ToleranceLeftRequest::most is free. False if the work
   /// budget ran out, or if `progress` ended the search.
   bool within_accuracy = false;

@@ -4,7 +4,7 @@
 // them (doc/PROMISE.md, "Tolerances").
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace fcl_artic {
 
@@ -38,6 +38,22 @@ struct ObjectSpeed {
   double speed = 0;
   /// Time from which on it may move, after the motion's begin; finite. Negative: it was seen so long before.
   double since = 0;
+};
+
+/// A contact within the tolerances: what is off, and by how much. At the time of the contact's t_upper the two bodies
+/// are proven in contact there.
+struct ToleranceWitness {
+  /// Joint values within the joints' tolerances of the motion's, rad or m; KinematicTree::dof() of them. They are the
+  /// motion's own if the bodies touch at these. Empty if the contact is not certain, and without tolerances.
+  Eigen::VectorXd q_witness;
+  /// Where the robot's base is, within its tolerance: a link whose pose in the world is M_0i at q_witness stands at
+  /// base_deviation * M_0i, m. The identity if it is in its place.
+  Eigen::Isometry3d base_deviation = Eigen::Isometry3d::Identity();
+  /// Where body 1 and body 2 are, each in the frame of its geometry: one whose pose is M stands at M * deviation, m. It
+  /// is within the object's pose tolerance and the way that its speed lets it go until then. The identity if the body
+  /// is in its place, and for geometry of a link. (A rotation is the proper one next to the nine numbers. By their
+  /// rounding alone a pivot may be off its place.)
+  Eigen::Isometry3d deviation1 = Eigen::Isometry3d::Identity(), deviation2 = Eigen::Isometry3d::Identity();
 };
 
 }  // namespace fcl_artic

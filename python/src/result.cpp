@@ -69,10 +69,21 @@ BodyRef bodyOfState(const py::tuple& s) {
   return body;
 }
 
+py::tuple witnessState(const ToleranceWitness& w) {
+  return py::make_tuple(arrayOf(w.q_witness), arrayOf(w.base_deviation), arrayOf(w.deviation1), arrayOf(w.deviation2));
+}
+
+void readWitness(const py::tuple& s, ToleranceWitness& w) {
+  w.q_witness = vectorOf(s[0], "q_witness");
+  w.base_deviation = poseOf(s[1], "base_deviation");
+  w.deviation1 = poseOf(s[2], "deviation1");
+  w.deviation2 = poseOf(s[3], "deviation2");
+}
+
 py::tuple state(const CertifiedContact& c) {
   return py::make_tuple(state(c.body1), state(c.body2), c.b1, c.b2, memberOf(c.feature), array3(c.point),
                         array3(c.normal), array3(c.nearest1), array3(c.nearest2), c.approach_speed, c.t_lower,
-                        c.t_upper, c.certain, arrayOf(c.q_witness));
+                        c.t_upper, c.certain, witnessState(c));
 }
 
 Vector3d plainVector(const py::object& value) {
@@ -94,7 +105,7 @@ CertifiedContact contactOfState(const py::tuple& s) {
   c.t_lower = py::cast<double>(s[10]);
   c.t_upper = py::cast<double>(s[11]);
   c.certain = py::cast<bool>(s[12]);
-  c.q_witness = vectorOf(s[13], "q_witness");
+  readWitness(s[13], c);
   return c;
 }
 
@@ -237,8 +248,18 @@ void bindContacts(py::class_<Result>& bound) {
       .def_property_readonly("statistics", [](const Result& r) { return statisticsOf(r.statistics); });
 }
 
-py::object witnessOf(const Eigen::VectorXd& q) {
-  return q.size() > 0 ? py::object(arrayOf(q)) : py::object(py::none());
+/// q_witness and the deviations beside it, each None where there is no witness.
+template <class Witness>
+void bindWitness(py::class_<Witness>& type) {
+  const auto bind = [&](const char* name, auto member) {
+    type.def_property_readonly(name, [member](const Witness& w) {
+      return w.q_witness.size() > 0 ? py::object(arrayOf(w.*member)) : py::object(py::none());
+    });
+  };
+  bind("q_witness", &ToleranceWitness::q_witness);
+  bind("base_deviation", &ToleranceWitness::base_deviation);
+  bind("deviation1", &ToleranceWitness::deviation1);
+  bind("deviation2", &ToleranceWitness::deviation2);
 }
 
 /// ": A and B" of what a search has found; empty: it has no pair.
@@ -323,8 +344,9 @@ void bindResults(py::module_& module) {
       .def("__repr__", [](const BodyRef& b) { return py::str("<Body {!r}>").format(b.name); })
       .def(py::pickle([](const BodyRef& b) { return state(b); }, &bodyOfState));
 
-  py::class_<CertifiedContact>(module, "Contact", "One contact; the normal points from body 1 to body 2.")
-      .def_readonly("body1", &CertifiedContact::body1)
+  py::class_<CertifiedContact> contact(module, "Contact", "One contact; the normal points from body 1 to body 2.");
+  bindWitness(contact);
+  contact.def_readonly("body1", &CertifiedContact::body1)
       .def_readonly("body2", &CertifiedContact::body2)
       .def_property_readonly("pair",
                              [](const CertifiedContact& c) { return py::make_tuple(c.body1.name, c.body2.name); })
@@ -339,7 +361,6 @@ void bindResults(py::module_& module) {
       .def_readonly("t_lower", &CertifiedContact::t_lower)
       .def_readonly("t_upper", &CertifiedContact::t_upper)
       .def_readonly("certain", &CertifiedContact::certain)
-      .def_property_readonly("q_witness", [](const CertifiedContact& c) { return witnessOf(c.q_witness); })
       .def("__repr__", [](const CertifiedContact& c) { return "<Contact: " + printed(c) + ">"; })
       .def(py::pickle([](const CertifiedContact& c) { return state(c); }, &contactOfState));
 
@@ -411,8 +432,8 @@ void bindResults(py::module_& module) {
   py::class_<ToleranceLeft> left(module, "ToleranceLeft",
                                  "How many times all tolerances may be as large: lower is free, upper is not proven.");
   bindFound(left);
+  bindWitness(left);
   left.def_readonly("certain", &ToleranceLeft::certain)
-      .def_property_readonly("q_witness", [](const ToleranceLeft& l) { return witnessOf(l.q_witness); })
       .def_readonly("within_accuracy", &ToleranceLeft::within_accuracy)
       .def("__repr__",
            [](const ToleranceLeft& l) {
@@ -421,9 +442,8 @@ void bindResults(py::module_& module) {
            })
       .def(py::pickle(
           [](const ToleranceLeft& l) {
-            return py::make_tuple(l.lower, l.upper, l.time, state(l.body1), state(l.body2), l.certain,
-                                  arrayOf(l.q_witness), l.within_accuracy, statisticsOf(l.statistics),
-                                  state(l.ignored_initial_contacts));
+            return py::make_tuple(l.lower, l.upper, l.time, state(l.body1), state(l.body2), l.certain, witnessState(l),
+                                  l.within_accuracy, statisticsOf(l.statistics), state(l.ignored_initial_contacts));
           },
           [](const py::tuple& s) {
             ToleranceLeft l;
@@ -433,7 +453,7 @@ void bindResults(py::module_& module) {
             l.body1 = bodyOfState(s[3]);
             l.body2 = bodyOfState(s[4]);
             l.certain = py::cast<bool>(s[5]);
-            l.q_witness = vectorOf(s[6], "q_witness");
+            readWitness(s[6], l);
             l.within_accuracy = py::cast<bool>(s[7]);
             l.statistics = statisticsOfDict(s[8]);
             l.ignored_initial_contacts = pairsOfState(s[9]);

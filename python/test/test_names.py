@@ -53,6 +53,7 @@ REACHABLE = {
     "FeatureKind": "FeatureKind",
     "BodyRef": "Body",
     "CertifiedContact": "Contact",
+    "ToleranceWitness": "Contact.q_witness",  # and its deviations
     "CertifiedResult": "Result",
     "CertifiedPairResult": "PairResult",
     "StandardStatistics": "Result.statistics",

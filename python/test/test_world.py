@@ -627,7 +627,12 @@ def test_tolerances(robot):
     assert world.check(q, q).free
     world.set_object_tolerance("ball", length=3)
     hit = world.check(q, q)
-    assert hit.contact and not hit.certain and hit.contacts[0].q_witness is None
+    contact = hit.contacts[0]
+    assert hit.contact and hit.certain and contact.body2.name == "ball"
+    assert np.abs(contact.q_witness).max() <= 0.01 and np.linalg.norm(contact.base_deviation[:3, 3]) <= 0.002
+    assert (contact.deviation1 == np.eye(4)).all() and 1 < np.linalg.norm(contact.deviation2[:3, 3]) <= 3
+    again = pickle.loads(pickle.dumps(hit)).contacts[0]
+    assert (again.deviation2 == contact.deviation2).all() and (again.base_deviation == contact.base_deviation).all()
     with pytest.raises(ValueError):
         world.set_joint_tolerance(angle=-1)
     with pytest.raises(ValueError, match="jiont"):

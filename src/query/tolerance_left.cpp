@@ -65,7 +65,7 @@ class ToleranceSearch : BracketSearch<Queries, ToleranceLeftRequest, ToleranceLe
     found_.time = contact.certain ? contact.t_upper : contact.t_lower;
     found_.body1 = contact.body1;
     found_.body2 = contact.body2;
-    found_.q_witness = contact.q_witness;
+    static_cast<ToleranceWitness&>(found_) = contact;
     return Verdict::contact;
   }
 };

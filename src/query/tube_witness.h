@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // With tolerances of joints and poses the engine's contacts say only that nothing keeps two bodies apart in the tube. A
-// contact is proven by a witness: a configuration in the tube at which the bodies certainly touch.
+// contact is proven by a witness: joints, base and objects are at a place within their tolerances, and there the bodies
+// certainly touch.
 #pragma once
 
 #include "fcl_artic/joint_motion.h"

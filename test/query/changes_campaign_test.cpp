@@ -228,7 +228,9 @@ bool same(const CertifiedContact& x, const CertifiedContact& y) {
          sameBits(x.point.data(), y.point.data(), 24) && sameBits(x.normal.data(), y.normal.data(), 24) &&
          x.q_witness.size() == y.q_witness.size() &&
          sameBits(x.q_witness.data(), y.q_witness.data(),
-                  sizeof(double) * static_cast<std::size_t>(x.q_witness.size()));
+                  sizeof(double) * static_cast<std::size_t>(x.q_witness.size())) &&
+         x.base_deviation.matrix() == y.base_deviation.matrix() && x.deviation1.matrix() == y.deviation1.matrix() &&
+         x.deviation2.matrix() == y.deviation2.matrix();
 }
 template <class Result>
 bool sameVerdict(const Result& a, const Result& b) {

@@ -32,9 +32,11 @@ struct Tolerances {
   Pad base;                         ///< about the world's origin
 
   bool any() const {
+    return ofPoses() || std::any_of(of_variable.begin(), of_variable.end(), [](double x) { return x > 0; });
+  }
+  bool ofPoses() const {
     const auto strays = [](const Pad& pad) { return pad.length > 0 || pad.angle > 0 || pad.speed > 0; };
-    return strays(base) || std::any_of(of_body.begin(), of_body.end(), strays) ||
-           std::any_of(of_variable.begin(), of_variable.end(), [](double x) { return x > 0; });
+    return strays(base) || std::any_of(of_body.begin(), of_body.end(), strays);
   }
 };
 
@@ -205,31 +207,73 @@ std::vector<Deviation> deviationsOf(const Scene& scene, const Tolerances& tolera
   return tried;
 }
 
-/// A proven contact's configuration is in the tube, and the two bodies touch there.
-/// @return whether it is another one than the motion's at that time.
-bool lookAtWitness(const Scene& scene, const Tolerances& tolerances, const Eigen::VectorXd& q, double time, int body1,
-                   int body2, Case& c) {
+Pose poseOf(const Eigen::Isometry3d& M) {
+  Pose pose;
+  pose.R = M.linear();
+  pose.p = M.translation();
+  return pose;
+}
+
+/// The angle of a rotation, rad.
+double angleOf(const Mat3& R) {
+  const Vec3 twice_sine(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
+  return std::atan2(twice_sine.norm(), R.trace() - 1);
+}
+
+/// Whether a deviation is more than rounding; one that is outside its tolerance is a fault.
+bool deviates(const char* of, const Eigen::Isometry3d& M, const Pad& pad, double time, Case& c) {
+  const Pose pose = poseOf(M);
+  const double angle = angleOf(pose.R), length = pose.p.norm();
+  if (angle > pad.angle) c.fault("witness", format("%s turns by %.17g, more than %.17g", of, angle, pad.angle));
+  if (length > pad.length + pad.wayAt(time)) {
+    c.fault("witness",
+            format("%s is off by %.17g, more than %.17g and %.17g", of, length, pad.length, pad.wayAt(time)));
+  }
+  return angle > 0 || length > 0;
+}
+
+struct WitnessSeen {
+  bool beside_motion = false;  ///< the joints are at other values than the motion's
+  bool off_its_pose = false;   ///< the base, or an object
+};
+
+/// A proven contact's configuration is in the tube, and so are base and objects; the two bodies touch there.
+WitnessSeen lookAtWitness(const Scene& scene, const Tolerances& tolerances, const fcl_artic::ToleranceWitness& witness,
+                          double time, int body1, int body2, Case& c) {
   const std::size_t n = tolerances.links.size();
+  const Eigen::VectorXd& q = witness.q_witness;
+  WitnessSeen seen;
   if (q.size() != static_cast<Eigen::Index>(n)) {
     c.fault("witness", "of another size");
-    return false;
+    return seen;
   }
   Scene real = scene;
   const Kinematics kinematics(scene);
-  bool nominal = true;
   for (std::size_t v = 0; v < n; ++v) {
     const auto i = static_cast<Eigen::Index>(v);
     const double at = scene.q0[v] + time * kinematics.deltaQ(static_cast<int>(v));
-    nominal = nominal && std::abs(q[i] - at) < 1e-12;
+    seen.beside_motion = seen.beside_motion || std::abs(q[i] - at) >= 1e-12;
     if (std::abs(q[i] - at) > tolerances.of_variable[v] + 1e-13 * (1 + std::abs(at))) {
       c.fault("witness", format("variable %zu is off by %.17g", v, q[i] - at));
     }
     real.q0[v] = real.q1[v] = q[i];
   }
   real.shortest = false;
+  seen.off_its_pose = deviates("the base", witness.base_deviation, tolerances.base, time, c);
+  // The base moves by T: seen from it, the obstacles move by its inverse.
+  const Pose base = poseOf(witness.base_deviation).inverse();
+  for (Body& body : real.bodies) {
+    if (body.link < 0) body.pose = base * body.pose;
+  }
+  for (const auto& [number, M] : {std::make_pair(body1, witness.deviation1), {body2, witness.deviation2}}) {
+    Body& body = real.bodies[static_cast<std::size_t>(number)];
+    const bool own = deviates("a body", M, tolerances.of_body[static_cast<std::size_t>(number)], time, c);
+    seen.off_its_pose = seen.off_its_pose || own;
+    body.pose = body.pose * poseOf(M);
+  }
   const Proximity near = Oracle(real).at(body1, body2, 0, 0.5);
   if (!near.touching && near.gap > 1e-9) c.fault("witness", format("the bodies are %.6g apart at it", near.gap));
-  return !nominal;
+  return seen;
 }
 
 void lookAtCase(Case& c) {
@@ -283,14 +327,19 @@ void lookAtCase(Case& c) {
 
   // A witness is in the tube, and touches.
   for (const CertifiedContact& contact : r.contacts) {
+    c.tally.count("tube contacts", tolerances.any());
+    c.tally.count("tube contacts, certain", tolerances.any() && contact.certain);
+    c.tally.count("tube contacts with poses", tolerances.ofPoses());
+    c.tally.count("tube contacts with poses, certain", tolerances.ofPoses() && contact.certain);
     if (!contact.certain) {
       if (contact.q_witness.size()) c.fault("witness", "of a contact that is not certain");
       continue;
     }
     if (!tolerances.any()) continue;  // none is wanted
-    c.tally.count("witness beside the motion",
-                  lookAtWitness(scene, tolerances, contact.q_witness, contact.t_upper,
-                                answer.bodyOf(contact.body1.object), answer.bodyOf(contact.body2.object), c));
+    const WitnessSeen seen = lookAtWitness(scene, tolerances, contact, contact.t_upper,
+                                           answer.bodyOf(contact.body1.object), answer.bodyOf(contact.body2.object), c);
+    c.tally.count("witness beside the motion", seen.beside_motion);
+    c.tally.count("witness off a pose", seen.off_its_pose);
   }
 }
 
@@ -328,7 +377,7 @@ void lookAtFactor(Case& c) {
   if (left.certain && left.upper > 0) {
     Answer bodies;
     bodies.objects = asked.question.objects;
-    lookAtWitness(scene, times(tolerances, left.upper), left.q_witness, left.time, bodies.bodyOf(left.body1.object),
+    lookAtWitness(scene, times(tolerances, left.upper), left, left.time, bodies.bodyOf(left.body1.object),
                   bodies.bodyOf(left.body2.object), c);
   }
 
@@ -364,6 +413,7 @@ TEST(Tubes, NoMotionWithinThemTouchesBeforeItIsSaid) {
   EXPECT_GE(all.share("free"), 0.15);
   EXPECT_GE(all.share("deviations that hit"), 0.05) << "no deviation tells";
   EXPECT_GE(all["witness beside the motion"], options.cases / 100);
+  EXPECT_GE(all["witness off a pose"], options.cases / 100);
   EXPECT_GE(all["reached"], options.cases / 10);
 }
 
