@@ -243,6 +243,38 @@ Json distancesJson(const Distances& distances) {
   return out;
 }
 
+/// By contact: where a witness within the tolerances has the robot's bodies, and an obstacle that is off its pose; null
+/// without a witness.
+/// @param center  that positions are relative to.
+Json witnessesJson(const Report& report, const std::vector<PageBody>& bodies, Shapes& shapes, const Vector3d& center) {
+  Json out = Json::array();
+  std::vector<Isometry3d> M_0;
+  for (const CertifiedContact& c : report.result.contacts) {
+    if (c.q_witness.size() == 0) {
+      out.push_back(nullptr);
+      continue;
+    }
+    report.tree.forwardKinematics(c.q_witness, M_0);
+    Json placed = Json::array();
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const PageBody& body = bodies[i];
+      const bool first = body.name == c.body1.name, second = body.name == c.body2.name;
+      const Isometry3d& own = first ? c.deviation1 : c.deviation2;
+      const bool off = (first || second) && own.matrix() != Eigen::Matrix4d::Identity();
+      if (body.link < 0 && !off) continue;
+      Isometry3d pose = body.link >= 0 ? c.base_deviation * M_0[static_cast<std::size_t>(body.link)] * body.pose
+                        : body.motion  ? body.motion(c.t_upper)
+                                       : body.pose;
+      if (off) pose = pose * own;
+      pose.translate(shapes.of(body).second);
+      pose.pretranslate(-center);
+      placed.push_back({{"body", i}, {"pose", poseNumbers(pose)}});
+    }
+    out.push_back(placed);
+  }
+  return out;
+}
+
 /// The bodies, their motions and their looks, for the page's script.
 Json motionJson(const Report& report, const std::vector<PageBody>& bodies, const Distances& distances) {
   const KinematicTree& tree = report.tree;
@@ -301,10 +333,11 @@ Json motionJson(const Report& report, const std::vector<PageBody>& bodies, const
                                   : length        ? "m"
                                                   : "quaternion"}});
   }
+  const Json witnesses = witnessesJson(report, bodies, shapes, center);
   return {{"center", numbersJson(center)}, {"times", times},         {"frames", links.size() + movers.size()},
           {"poses", base64(poses)},        {"variables", variables}, {"values", base64(joint_values)},
           {"shapes", shapes.json()},       {"bodies", body_list},    {"distances", distancesJson(distances)},
-          {"pieces", report.pieces}};
+          {"pieces", report.pieces},       {"witnesses", witnesses}};
 }
 
 /// JSON for within a page's <script>: nothing in it ends the script or begins a comment, and names that are no UTF-8

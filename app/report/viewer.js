@@ -118,6 +118,7 @@ const worldOf = (body, frames) => (body.frame === null ? body.local : product(fr
 const LINKS = [0x64748B, 0x3F7CAC, 0x5AA9A2, 0x6C83C9, 0x8FB8DE, 0x4C956C, 0x8E7DBE, 0x2F6690, 0x7FB69A];
 const OBSTACLES = [0xCFC8BA, 0xC2BBAE, 0xD6D1C7, 0xB9B4A9];
 const TOUCHING = 0xE4572E, TOUCHED = 0xF2A93B, MARK = 0xC1121F, BEFORE = 0x4A90D9, AFTER = 0x9A948C;
+const WITNESS = 0xD91EA0;  // magenta: where the tolerances let bodies touch
 
 const bodies = motion.bodies.map((body) => ({...body, local: matrixOf(body.pose), visible: true}));
 {
@@ -133,6 +134,10 @@ const bodies = motion.bodies.map((body) => ({...body, local: matrixOf(body.pose)
 }
 let chosen = 0;  // of the contacts
 const contact = () => contacts[chosen] || null;
+/** Bodies with their poses, where the tolerances let the chosen contact be; none where it has no witness. */
+const witness = () => motion.witnesses[chosen] || [];
+/** When the page shows a contact: a witness is one of its t_upper. */
+const momentOf = (c) => (c.q_witness ? c.t_upper : c.t_lower);
 /** 1 or 2 for a body of the chosen contact, else 0. */
 function sideOf(body) {
   const c = contact();
@@ -574,7 +579,7 @@ function chooseView() {
   camera.distance = 1.08 * stageBall[1] / Math.sin(camera.field / 2);
   const c = contact(), width = 96, height = 64;
   if (!bodies.length) return;
-  const frames = framesAt(c ? c.t_lower : BEGIN), mark = 0.05 * stageBall[1];
+  const frames = framesAt(c ? momentOf(c) : BEGIN), mark = 0.05 * stageBall[1];
   let best = null;
   for (const elevation of [0.25, 0.55]) {
     for (let i = 0; i < 12; ++i) {
@@ -613,7 +618,7 @@ function makeWay() {
   const c = contact(), count = 160, walks = [];
   for (const body of bodies) {
     if (!body.moves || body.kind === 'moving obstacle' || (c && !sideOf(body))) continue;
-    const start = worldOf(body, framesAt(c ? c.t_lower : BEGIN));
+    const start = worldOf(body, framesAt(c ? momentOf(c) : BEGIN));
     let local = screen.shapes[body.shape].around[0];
     if (c) {  // the contact in the body's frame: its matrix turns and moves only
       const d = sub(here(c.point), start.slice(12, 15));
@@ -718,12 +723,22 @@ function draw() {
     if (screen.view.eye[2] > groundAt) drawShadows(frames);
   }
   drawMarks();
+  drawWitness();
   if (isOn('show-ends')) {
     for (const [t, hex] of [[BEGIN, BEFORE], [END, AFTER]]) {
       const ends = framesAt(t);
       screen.translucent(() => drawBodies(ends, (body) => body.moves, () => ({color: color(hex), glow: 0.3, alpha: 0.22})));
     }
   }
+}
+function drawWitness() {
+  if (!isOn('show-witness')) return;
+  screen.translucent(() => {
+    for (const {body, pose} of witness()) {
+      const {shape, visible} = bodies[body];
+      if (visible) screen.draw(screen.shapes[shape], matrixOf(pose), {color: color(WITNESS), glow: 0.3, alpha: 0.45});
+    }
+  });
 }
 function redraw() {
   if (!due) requestAnimationFrame(draw);
@@ -832,7 +847,8 @@ function drawPlot() {
   }
   contacts.forEach((c, i) => {
     const width = Math.max(xOf(c.certain ? c.t_upper : c.t_lower) - xOf(c.t_lower), i === chosen ? 2 : 1);
-    const mark = part('rect', {x: xOf(c.t_lower) - width / 2, y: TOP - 4, width, height: floor - TOP + 4, fill: hue('--contact')});
+    const middle = (xOf(c.t_lower) + xOf(c.certain ? c.t_upper : c.t_lower)) / 2;
+    const mark = part('rect', {x: middle - width / 2, y: TOP - 4, width, height: floor - TOP + 4, fill: hue('--contact')});
     mark.append(document.createElementNS(SVG, 'title'));
     mark.firstChild.textContent = `${c.body1.name} and ${c.body2.name}: t in [${c.t_lower}, ${c.t_upper}]`;
   });
@@ -872,6 +888,7 @@ function writeLegend() {
   for (const {key, name} of series()) item(`var(--${key})`, name);
   if (answer.status === 'free' || answer.t_lower > BEGIN) item(pale('--free'), 'proven free');
   if (contacts.length) item('var(--contact)', contacts.length > 1 ? 'contacts' : 'contact');
+  if (motion.witnesses.some(Boolean)) item(`#${WITNESS.toString(16)}`, 'your robot may touch here');
   if (answer.status !== 'free') item(pale('--soft'), contacts.length ? 'after it: no verdict' : 'no verdict');
 }
 
@@ -930,7 +947,7 @@ function choose(i) {
   writeContacts();
   writeBodies();
   drawPlot();
-  setTime(contacts[i].t_lower);
+  setTime(momentOf(contacts[i]));
 }
 
 /** A joint's value, and an angle's in degrees. */
@@ -998,6 +1015,7 @@ function writeProven() {
     say(`Of ${shape.count} ${shape.kind} of ${names[0]} one in ${shape.every} is drawn; all were checked.`);
   });
   if (!contacts.length) return;
+  if (motion.witnesses.some(Boolean)) say('Magenta is a place within the tolerances, of joints, base and objects, at which the chosen contact is proven: at its t_upper.');
   say('The bodies of the chosen contact are red and amber. The mark is its point with its normal, which points from the red to the amber body; the dark points are those that are nearest to each other at t_lower.');
 }
 
@@ -1087,12 +1105,13 @@ function listen() {
   $('play').onclick = () => play(!playing);
   $('time').oninput = () => { play(false); setTime(BEGIN + (END - BEGIN) * Number($('time').value)); };
   $('reset').onclick = () => { chooseView(); redraw(); };
-  for (const id of ['show-ends', 'show-trace', 'show-ground']) $(id).onchange = redraw;
+  $('witness-of').hidden = !motion.witnesses.some(Boolean);
+  for (const id of ['show-ends', 'show-trace', 'show-witness', 'show-ground']) $(id).onchange = redraw;
   $('theme').onclick = () => setTheme(isDark() ? 'light' : 'dark');
-  const goal = contacts.length ? contacts[0].t_lower : answer.status === 'free' ? null : answer.t_lower;
+  const goal = contacts.length ? momentOf(contacts[0]) : answer.status === 'free' ? null : answer.t_lower;
   $('go').hidden = goal === null;
   $('go').textContent = contacts.length ? 'To contact' : 'To t_lower';
-  const go = () => { if (goal !== null) { play(false); setTime(contacts.length ? contact().t_lower : goal); } };
+  const go = () => { if (goal !== null) { play(false); setTime(contacts.length ? momentOf(contact()) : goal); } };
   $('go').onclick = go;
   document.addEventListener('keydown', (e) => {
     if (e.ctrlKey || e.metaKey || e.altKey || /^(INPUT|SELECT|BUTTON|SUMMARY)$/.test(e.target.tagName)) return;
@@ -1157,7 +1176,7 @@ try {
 }
 listen();
 drawPlot();
-setTime(contacts.length ? contacts[0].t_lower : BEGIN);
+setTime(contacts.length ? momentOf(contacts[0]) : BEGIN);
 readAddress();
 draw();
 if (screen) {  // for tests: how many pixels of the picture show something
@@ -1166,6 +1185,16 @@ if (screen) {  // for tests: how many pixels of the picture show something
   let drawn = 0;
   for (let i = 3; i < pixels.length; i += 4) drawn += pixels[i] > 0;
   root.dataset.drawnPixels = drawn;
+  const box = $('show-witness');
+  box.checked = false;
+  draw();
+  const without = new Uint8Array(pixels.length);
+  gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, without);
+  let ofWitness = 0;
+  for (let i = 0; i < pixels.length; i += 4) ofWitness += [0, 1, 2, 3].some((k) => pixels[i + k] !== without[i + k]);
+  root.dataset.witnessPixels = ofWitness;
+  box.checked = true;
+  draw();
 }
 root.dataset.ready = screen ? 'drawn' : 'not drawn';
 })();

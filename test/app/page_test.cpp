@@ -115,6 +115,40 @@ TEST_F(ProgramTest, PageOfAContactHasTheAnswer) {
   }
 }
 
+TEST_F(ProgramTest, PageOfAWitnessHasWhereTheTolerancesLetBodiesTouch) {
+  const std::string file = path("witness.html"),
+                    way = "check " + armAndBall() + " --from 0,0 --to 40deg,0 --html " + file;
+  // The arm turns about the world's z axis. At its goal it is 0.055 m from the ball.
+  for (const bool base : {true, false}) {
+    ASSERT_EQ(this->run(way + (base ? " --base-tolerance 100mm" : " --tolerance ball=100mm")).status, 1);
+    const Json motion = motionOf(read(file)), contact = answerOf(read(file)).at("contacts").at(0);
+    ASSERT_TRUE(contact.at("certain"));
+    EXPECT_EQ(contact.at("base_deviation").is_null(), !base);
+    EXPECT_EQ(contact.at("deviation2").is_null(), base);
+    std::set<std::string> names;
+    for (const Json& placed : motion.at("witnesses").at(0)) {
+      const Json& body = motion.at("bodies").at(placed.at("body").get<std::size_t>());
+      names.insert(body.at("name"));
+      const auto at = [](const Json& numbers) { return Eigen::Vector3d(numbers[0], numbers[1], numbers[2]); };
+      Eigen::Vector3d expected = at(body.at("pose"));
+      if (body.at("name") == "arm") {
+        expected = Eigen::AngleAxisd(contact.at("q_witness").at("hinge"), Eigen::Vector3d::UnitZ()) * expected;
+        if (base) expected += at(contact.at("base_deviation").at("position"));
+        expected -= at(motion.at("center"));
+      } else if (body.at("name") == "ball") {
+        expected += at(contact.at("deviation2").at("position"));
+      } else {
+        continue;
+      }
+      EXPECT_LT((at(placed.at("pose")) - expected).norm(), 1e-12) << body.at("name");
+    }
+    EXPECT_EQ(names.count("arm"), 1u);
+    EXPECT_EQ(names.count("ball"), base ? 0u : 1u);
+  }
+  ASSERT_EQ(this->run("check " + armAndBall() + " --from 0,0 --to 90deg,0 --html " + file).status, 1);
+  EXPECT_TRUE(motionOf(read(file)).at("witnesses").at(0).is_null()) << "without tolerances there is none";
+}
+
 TEST_F(ProgramTest, PageOfAFreeMotionHasNoContact) {
   const std::string file = path("free.html");
   const Outcome run = this->run("check " + armAndBall() + " --from 0,0 --to 40deg,0 --html " + file);
@@ -350,6 +384,19 @@ TEST_F(PageInBrowser, DrawsTheMotionAndTellsTheAnswer) {
   // At t = 0.25 the hinge is at 22.5 degrees: of its two cells the second.
   EXPECT_NE(between(page, "<div id=\"joints\">", "</div>").find("22.5°"), std::string::npos);
   EXPECT_NE(between(page, "<figcaption id=\"reading\"", "</figcaption>").find("arm – ball ≤ "), std::string::npos);
+}
+
+TEST_F(PageInBrowser, DrawsTheWitnessAndNamesItInTheLegend) {
+  const std::string file = path("witness.html"), way = "check " + armAndBall() + " --from 0,0 --html " + file;
+  ASSERT_EQ(this->run(way + " --to 40deg,0 --base-tolerance 100mm").status, 1);
+  std::string page = browse(file, "--dump-dom");
+  EXPECT_GT(std::atoi(between(page, "data-witness-pixels=\"", "\"").c_str()), 200);
+  EXPECT_NE(between(page, "<p id=\"legend\">", "</p>").find("your robot may touch here"), std::string::npos);
+  ASSERT_EQ(this->run(way + " --to 90deg,0").status, 1);
+  page = browse(file, "--dump-dom");
+  EXPECT_EQ(between(page, "data-witness-pixels=\"", "\""), "0");
+  EXPECT_EQ(between(page, "<p id=\"legend\">", "</p>").find("may touch"), std::string::npos);
+  EXPECT_NE(page.find("<label id=\"witness-of\" hidden"), std::string::npos);
 }
 
 TEST_F(PageInBrowser, ShowsItselfAsAPicture) {
