@@ -258,14 +258,11 @@ int runCertify(CertifyVerb& o) {
                         {"--auto-srdf", &o.world.auto_srdf}},
                        inputs);
   World world(o.world);
-  if (!world.tolerances().speeds.empty()) {
-    if (!o.certificate.empty()) refuseCertificatesOfSpeeds();
-    if (o.mend) {
-      throw std::invalid_argument(fmt::format(
-          "--speed: a detour is made of motions that are asked one by one, as if '{}' had just been seen at "
-          "its place: mend without --speed, then certify the mended plan with its times",
-          world.tolerances().speeds.front().object));
-    }
+  if (o.mend && !world.tolerances().speeds.empty()) {
+    throw std::invalid_argument(
+        fmt::format("--speed: a detour is made of motions that are asked one by one, as if '{}' had just been seen at "
+                    "its place: mend without --speed, then certify the mended plan with its times",
+                    world.tolerances().speeds.front().object));
   }
   world.open(o.certify.request);
   const KinematicTree& tree = *world.robot.tree;

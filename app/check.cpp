@@ -98,7 +98,6 @@ void requireTimeForSpeeds(const CheckVerb& options, const ToleranceSettings& tol
         "with times (--trajectory)",
         object));
   }
-  if (!options.certificate.empty()) refuseCertificatesOfSpeeds();
 }
 
 int runCheck(CheckVerb& options) {

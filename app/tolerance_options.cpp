@@ -199,11 +199,6 @@ void ToleranceSettings::apply(const Scene& scene, ArticulatedCollisionManager& m
   }
 }
 
-void refuseCertificatesOfSpeeds() {
-  throw std::invalid_argument(
-      "--speed: a certificate does not state how fast objects move by themselves: leave --certificate out");
-}
-
 std::string ToleranceSettings::text() const {
   std::vector<std::string> lines;
   for (const OfJoint& of : joints) {

@@ -59,7 +59,4 @@ struct ToleranceSettings {
 ///   joint or object.
 ToleranceSettings readToleranceSettings(const ToleranceOptions& options);
 
-/// @throws std::invalid_argument: a certificate is asked for where objects have speeds.
-[[noreturn]] void refuseCertificatesOfSpeeds();
-
 }  // namespace fcl_artic::app

@@ -330,8 +330,12 @@ void readTolerance(Lines& lines, const IdOf& idOf, World& world) {
   } else if (kind == "body") {
     const int name = idOf(lines.name());
     pose(world.body_tolerances, name);
+  } else if (kind == "speed") {
+    const int name = idOf(lines.name());
+    const Speed speed{most = lines.notNegative(), lines.number()};
+    is_new = world.speeds.emplace(name, speed).second;
   } else {
-    lines.fail("a tolerance is of a variable, vector, rotation, frame or body");
+    lines.fail("a tolerance is of a variable, vector, rotation, frame, body or speed");
   }
   if (!is_new) lines.fail("the tolerance is there already");
   if (most == 0) lines.fail("a tolerance is above 0");
@@ -439,6 +443,21 @@ World readWorldText(std::string_view text) {
   return world;
 }
 
+/// The rest of a line `clock` of the last piece. The clock goes on where it was at the end of the piece before.
+void readClock(Lines& lines, const World& world, Motion& motion) {
+  Piece& piece = motion.pieces.back();
+  if (world.speeds.empty()) lines.fail("no body has a speed: a clock means nothing");
+  if (piece.has_clock) lines.fail("a piece has one clock");
+  piece.has_clock = true;
+  for (double& x : piece.clock) x = lines.number();
+  const bool first = motion.pieces.size() == 1;
+  const double before = first ? 0 : motion.pieces[motion.pieces.size() - 2].clock[1];
+  if (piece.clock[0] != before)
+    lines.fail(first ? "the motion's clock begins at 0"
+                     : "the clock is another one than at the end of the piece before");
+  if (piece.clock[1] < piece.clock[0]) lines.fail("the clock goes back");
+}
+
 }  // namespace
 
 World readWorld(std::string_view text) {
@@ -489,9 +508,14 @@ Motion readMotion(std::string_view text, const World& world) {
       if (!(motion.until >= 0 && motion.until <= 1)) lines.fail("'until' is in [0, 1]");
     } else if (kind == "piece") {
       motion.pieces.emplace_back();
-    } else if (kind == "q" || kind == "orientation" || kind == "ignored") {
+    } else if (kind == "q" || kind == "orientation" || kind == "ignored" || kind == "clock") {
       if (motion.pieces.empty()) lines.fail("a 'piece' comes first");
       Piece& piece = motion.pieces.back();
+      if (kind == "clock") {
+        readClock(lines, world, motion);
+        lines.end();
+        continue;
+      }
       if (kind == "ignored") {
         const int a = static_cast<int>(lines.integer(world.bodies.size())),
                   b = static_cast<int>(lines.integer(world.bodies.size()));
@@ -532,6 +556,8 @@ Motion readMotion(std::string_view text, const World& world) {
     if (!seen[item]) lines.fail("one of world, margin, scope, until is missing");
   if (!motion.self && !motion.scene) lines.fail("the scope is empty: nothing is claimed");
   if (motion.pieces.empty()) lines.fail("there is no piece");
+  for (const Piece& piece : motion.pieces)
+    if (piece.has_clock == world.speeds.empty()) lines.fail("bodies have speeds, and a piece has no 'clock'");
   return motion;
 }
 

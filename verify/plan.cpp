@@ -137,6 +137,7 @@ class PlanComparison {
     count();
     for (std::size_t k = 1; columns_.time != Columns::kNone && k < plan_.rows.size(); ++k)
       if (!(time(k) > time(k - 1))) different("its time does not increase at waypoint " + std::to_string(k));
+    if (!world_.speeds.empty()) clock();
     for (std::size_t v = 0; v < world_.variables.size(); ++v) variable(v);
     if (result_.differences.empty()) note();
     return std::move(result_);
@@ -159,6 +160,22 @@ class PlanComparison {
       different("the motion has " + counted(pieces, "piece") + ", the plan " + std::to_string(all));
     else if (pieces < all && motion_.until >= 1)
       different("the motion ends at waypoint " + std::to_string(pieces) + " of " + std::to_string(all));
+  }
+
+  /// The plan is nowhere later than the motion's clock: bodies that move by themselves get no farther. Between
+  /// waypoints both times go linearly along the same curve. A difference of doubles is the rounded one and an error, a
+  /// double, too.
+  void clock() {
+    if (columns_.time == Columns::kNone)
+      return different("it has no times, and bodies move by themselves for as long as it takes");
+    for (std::size_t k = 0; k < std::min(motion_.pieces.size(), plan_.rows.size() - 1); ++k) {
+      const double most = motion_.pieces[k].clock[1], a = time(k + 1), b = time(0), elapsed = a - b;
+      const double taken = a - elapsed, error = (a - (elapsed + taken)) + (taken - b);
+      if (elapsed < most || (elapsed == most && error <= 0)) continue;
+      return different("it is at waypoint " + std::to_string(k + 1) + " after " + shortDecimal(elapsed) +
+                       " s, by the motion's clock after " + shortDecimal(most) +
+                       " s: bodies that move by themselves get farther");
+    }
   }
 
   /// Coefficients of a variable in a piece, without zeros at the end but for the first.
@@ -342,11 +359,17 @@ class PlanComparison {
     if (retimed)
       result_.notes.push_back("the plan is retimed: it takes " + shortDecimal(length) +
                               " s, the certificate's motion " + shortDecimal(motion_.duration) + " s");
-    result_.notes.push_back(
-        obstaclesMove() ? "obstacles move, too: this is proven of one timing, in which they are where the plan has them"
-        : kind_ == Interpolation::linear ? "nothing else moves: this is proven of every timing of these straight lines"
-                                         : "nothing else moves: this is proven of every timing of these very curves "
-                                           "(splines of other times differ)");
+    if (!world_.speeds.empty())
+      result_.notes.push_back(
+          "bodies move by themselves: this is proven of timings that are nowhere later than its clock");
+    else
+      result_.notes.push_back(
+          obstaclesMove()
+              ? "obstacles move, too: this is proven of one timing, in which they are where the plan has them"
+          : kind_ == Interpolation::linear
+              ? "nothing else moves: this is proven of every timing of these straight lines"
+              : "nothing else moves: this is proven of every timing of these very curves "
+                "(splines of other times differ)");
   }
 
   const World& world_;

@@ -210,6 +210,7 @@ class Walk {
     if (partners.empty()) return;
     at_.span = span;
     std::vector<std::uint32_t> again;
+    const Piece& piece = motion_.pieces[piece_];
     try {
       Functional f(world_, poses_, span, line.frame, line.v, line.d);
       Fix squares;
@@ -228,12 +229,16 @@ class Walk {
       for (const std::uint32_t k : partners) {
         const int body = partners_[k].body;
         const auto b = reach(body, single ? task.k : 0, single ? task.l : geometryOf(world_, body).pieces(), false);
-        const Fix margin = mulUp(partners_[k].margin, length);
+        const Lengths way = wayOf(world_, piece, span, a_), other = wayOf(world_, piece, span, body);
+        Lengths closed;
         bool apart = true;
-        for (std::size_t i = 0; i < 3; ++i) apart = apart && a[i] + b[i] + margin < Fix{0};
+        for (std::size_t i = 0; i < 3; ++i) {
+          closed[i] = a[i] + b[i] + mulUp(partners_[k].margin + way[i] + other[i], length);
+          apart = apart && closed[i] < Fix{0};
+        }
         if (apart && world_.gives) {
           const Part partner{body, single ? task.k : 0, single ? task.l : geometryOf(world_, body).pieces()};
-          apart = tube.covers({a[0] + b[0] + margin, a[1] + b[1] + margin, a[2] + b[2] + margin}, length, partner);
+          apart = tube.covers(closed, length, partner);
         }
         if (!apart) again.push_back(k);
       }

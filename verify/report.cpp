@@ -46,6 +46,19 @@ std::string poseText(const PoseTolerance& t) {
   return t.length == 0 ? angleText(t.angle) : lengthText(t.length) + " and " + angleText(t.angle);
 }
 
+/// With as few digits as mean this very number.
+std::string shortest(double x) {
+  char text[40];
+  for (int digits = 1; digits <= 17; ++digits) {
+    std::snprintf(text, sizeof text, "%.*g", digits, x);
+    if (std::strtod(text, nullptr) == x) break;
+  }
+  return text;
+}
+std::string speedText(const Speed& of) {
+  return "at up to " + shortest(of.speed) + " m/s from " + shortest(of.since) + " s on";
+}
+
 /// How far variables may be from the motion, in words, of those that have a tolerance, and "0" of those that have none
 /// but move a body that is no obstacle.
 std::vector<std::pair<std::string, std::string>> variablesWithin(const World& world) {
@@ -164,11 +177,15 @@ std::vector<std::string> linesOf(const World& world) {
     bodies.push_back(pose(inQuotes(world.names[static_cast<std::size_t>(name)]), t));
   addList(lines, "tolerances of frames", frames);
   addList(lines, "tolerances of bodies", bodies);
+  std::vector<std::string> speeds;
+  for (const auto& [name, of] : world.speeds)
+    speeds.push_back(inQuotes(world.names[static_cast<std::size_t>(name)]) + " " + speedText(of));
+  addList(lines, "bodies that may move by themselves", speeds);
   return lines;
 }
 
-std::string coveredBy(const World& world) {
-  if (!world.gives) return "";
+/// "for every path within 0.3 deg of it, base 'base' within 2 mm, "
+static std::string withinTolerances(const World& world) {
   const auto variables = variablesWithin(world);
   std::map<std::string, std::size_t> counts;
   std::string most;  // the tolerance that most variables have
@@ -192,6 +209,15 @@ std::string coveredBy(const World& world) {
   return text + ", ";
 }
 
+std::string coveredBy(const World& world) {
+  std::string ways;
+  for (const auto& [name, of] : world.speeds)
+    ways += (ways.empty() ? "for every way of " : " and of ") + inQuotes(world.names[static_cast<std::size_t>(name)]) +
+            " " + speedText(of);
+  if (!ways.empty()) ways += ", ";
+  return world.gives ? withinTolerances(world) + ways : ways;
+}
+
 std::vector<std::string> linesOf(const World& world, const Motion& motion, const Verdict& verdict) {
   std::vector<std::string> lines;
   lines.push_back(std::string("checked: ") + (motion.self ? "links with links" : "") +
@@ -205,6 +231,9 @@ std::vector<std::string> linesOf(const World& world, const Motion& motion, const
   lines.push_back("goal, t = " + decimal(motion.until) + ofPiece(last) + ":" +
                   startOrGoal(world, motion.pieces.back(), &motion.until));
   if (motion.duration != 0) lines.push_back("duration: " + decimal(motion.duration) + " s, which no proof uses");
+  if (!world.speeds.empty())
+    lines.push_back("clock, by which bodies move by themselves: 0 s at the start, " +
+                    shortest(motion.pieces.back().clock[1]) + " s at t = 1" + ofPiece(last));
   if (last > 0) {
     char jump[20];
     std::snprintf(jump, sizeof jump, "%.2g", verdict.jump);

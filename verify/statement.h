@@ -72,6 +72,11 @@ struct PoseTolerance {
   double pivot[3];       // about which it turns
 };
 
+/// How fast a body may move by itself, and from when on.
+struct Speed {
+  double speed, since;  // m/s; s on the motion's clock
+};
+
 struct Unchecked {
   Reason reason;
   std::uint64_t pairs = 0;  // of bodies, that are not checked for it
@@ -96,6 +101,7 @@ struct World {
   std::map<int, double> variable_tolerances, rotation_tolerances;
   std::map<int, VectorTolerance> vector_tolerances;
   std::map<int, PoseTolerance> frame_tolerances, body_tolerances;
+  std::map<int, Speed> speeds;  // by names of bodies
   // Derived:
   bool gives = false;                          // a frame or body does
   std::vector<char> moves, turns;              // of each variable: whether an element uses it; a `rotate` begins there
@@ -112,6 +118,9 @@ struct Piece {
   std::map<int, std::vector<double>> polynomials;     // by variable: coefficients of 1, t, t^2, ...
   std::map<int, std::array<double, 9>> orientations;  // by variable
   std::map<std::pair<int, int>, double> ignored;      // by bodies, the lower number first: until when
+  /// s: how long the whole motion has taken at t = 0 and at t = 1, linear between. Where the world has speeds.
+  double clock[2] = {0, 0};
+  bool has_clock = false;
 };
 struct Motion {
   std::string hash;  // of its text

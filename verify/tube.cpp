@@ -153,6 +153,20 @@ void deriveGives(World& world) {
   Gives(world).run();
 }
 
+// The way v max(0, T(t) - since) is convex in t, as the clock T is a line: the chord from one end of the span to the
+// other is not below it. T(t) = begin + t (end - begin) and t is in [0, 1], so bounds of both ends bound it.
+Lengths wayOf(const World& world, const Piece& piece, const Span& span, int body) {
+  const auto own = world.speeds.find(world.bodies[static_cast<std::size_t>(body)].name_id);
+  if (own == world.speeds.end()) return {};
+  const Fix begin = encloseUp(piece.clock[0]), most = encloseUp(piece.clock[1]) - encloseDown(piece.clock[0]);
+  const auto at = [&](Fix t) {
+    const Fix since = begin + mulUp(std::max(t, Fix{0}), most) - encloseDown(own->second.since);
+    return since > Fix{0} ? mulUp(encloseUp(own->second.speed), since) : Fix{0};
+  };
+  const Fix first = at(span.a), last = at(span.b);
+  return {first, shifted(first + last, 1) + ulps(1), last};
+}
+
 // The distance of x = R p + t from the axis through 0 along the unit vector k is |k x x|; from a point c it is |x - c|.
 std::optional<Lengths> Tube::move(const Part& part, const Give& give, const Pose& pose) {
   Lengths lengths{give.slide, give.slide, give.slide};

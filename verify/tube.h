@@ -17,6 +17,9 @@ struct Part {
 /// The three Bernstein coefficients of a length over an interval of time.
 using Lengths = std::array<Fix, 3>;
 
+/// Coefficients of a line that is nowhere below the way that a body may have come by itself (doc/TUBES.md, "Speeds").
+Lengths wayOf(const World& world, const Piece& piece, const Span& span, int body);
+
 class Tube {
  public:
   Tube(const World& world, Poses& poses, const Span& span, const Part& a)

@@ -321,6 +321,7 @@ let tolerance l t variables frames =
       let b = name l in
       fresh t.bodies_off b;
       t.bodies_off <- (b, pose ()) :: t.bodies_off
+  | "speed" -> fail l "'tolerance speed': bodies that move by themselves are not read here (fcl_artic_verify does)"
   | _ -> fail l "a tolerance is of a variable, vector, rotation, frame or body");
   last l
 

@@ -27,6 +27,7 @@ namespace {
 
 std::string pieceText(const World& world, const Motion& motion) {
   std::string text = "piece\n";
+  if (world.clocked) text += "clock " + numberText(motion.clock_begin) + " " + numberText(motion.clock_end) + "\n";
   const Eigen::MatrixXd& c = motion.coefficients;
   for (Eigen::Index v = 0; v < c.rows(); ++v) {
     Eigen::Index degree = c.cols() - 1;

@@ -109,7 +109,9 @@ class Emitter {
     Sets sets{task, frame, exact, {}, {}};
     for (std::size_t p = task.first; p < task.last; ++p) {
       if (!counts(task, partners_[p])) continue;
-      const bool still = moving_.body(partners_[p]).frame == frame && (frame == 0 || !moving_.world().tolerant);
+      const Body& partner = moving_.body(partners_[p]);
+      const bool still =
+          partner.frame == frame && partner.speed.speed == 0 && (frame == 0 || !moving_.world().tolerant);
       (still ? sets.still : sets.moving).push_back(partners_[p]);
     }
     return sets;

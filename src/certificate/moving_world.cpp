@@ -182,6 +182,13 @@ double MovingWorld::moveAt(const Place& place, int i, std::int32_t node, double 
   return it->second = give.slide + give.chord * largestDistance(geometry(i), node, point, axis);
 }
 
+double MovingWorld::wayOf(int i, double t) const {
+  const ObjectSpeed& speed = body(i).speed;
+  if (speed.speed == 0) return 0;
+  const double now = motion_.clock_begin + t * (motion_.clock_end - motion_.clock_begin);
+  return speed.speed * std::max(0.0, now - speed.since);
+}
+
 double MovingWorld::stray(int a, std::int32_t node_a, int b, std::int32_t node_b, double t) {
   if (!world_.tolerant) return 0;
   const std::vector<Place> places = placesBetween(a, b);
@@ -196,12 +203,12 @@ double MovingWorld::stray(int a, std::int32_t node_a, int b, std::int32_t node_b
     least = std::min(least, sum);
     if (k < places.size()) own += moveAt(places[k], a, node_a, t);
   }
-  return least;
+  return least + wayOf(a, t) + wayOf(b, t);
 }
 
 double MovingWorld::stray(int i, std::int32_t node, double t) {
   if (!world_.tolerant) return 0;
-  double sum = ownStray(i, node);
+  double sum = ownStray(i, node) + wayOf(i, t);
   for (int f = body(i).frame; f > 0; f = world_.frames[static_cast<std::size_t>(f)].parent) {
     const std::size_t count = world_.frames[static_cast<std::size_t>(f)].gives.size();
     for (std::size_t k = 0; k < count; ++k) sum += moveAt({f, static_cast<int>(k), -1}, i, node, t);

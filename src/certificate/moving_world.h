@@ -25,6 +25,8 @@ struct Motion {
     double until;  ///< not checked before that time
   };
   std::vector<Ignored> ignored;
+  /// The time that has passed since the whole motion's begin, at t = 0 and at t = 1; linear between.
+  double clock_begin = 0, clock_end = 1;
   double until = 1;     ///< the claim is on [0, until]
   std::string missing;  ///< why the motion cannot be stated; empty: it can
 };
@@ -55,6 +57,8 @@ class MovingWorld {
   double stray(int a, std::int32_t node_a, int b, std::int32_t node_b, double t);
   /// The same of one body against a place that stands still in the world.
   double stray(int body, std::int32_t node, double t);
+  /// How far a body can have come by itself at time t.
+  double wayOf(int body, double t) const;
   /// How far a body strays by the tolerance of its own pose.
   double ownStray(int body, std::int32_t node);
   double margin(int a, int b) const { return world_.marginOf(body(a), body(b), motion_.margin, motion_.added); }

@@ -341,12 +341,21 @@ class Builder {
                const Eigen::Isometry3d& pose, std::size_t number) {
     const auto [it, is_new] = geometry_of_.try_emplace(shape.get(), static_cast<int>(world.geometries.size()));
     if (is_new) world.geometries.emplace_back(std::move(shape));
-    world.bodies.push_back(
-        {role, name, frame, it->second, pose, static_cast<std::int32_t>(number), world.margins.ofBody(name), {}, {}});
+    world.bodies.push_back({role,
+                            name,
+                            frame,
+                            it->second,
+                            pose,
+                            static_cast<std::int32_t>(number),
+                            world.margins.ofBody(name),
+                            {},
+                            {},
+                            {}});
   }
   /// Tolerances of objects, and lines of others.
   void tolerate(const WorldTolerances& tolerances, const std::string& lines) {
     of_object_ = tolerances.of_object;
+    speeds_ = tolerances.speeds;
     tolerance_lines_ += lines;
   }
   void exclude(const char* reason, const std::string& a, const std::string& b) {
@@ -359,6 +368,7 @@ class Builder {
  private:
   std::map<const ShapeTree*, int> geometry_of_;
   std::map<std::string, PoseTolerance> of_object_;
+  std::map<std::string, ObjectSpeed> speeds_;
   std::string tolerance_lines_;
   std::set<std::array<std::string, 3>> unchecked_;
 };
@@ -409,10 +419,17 @@ void Builder::write() {
   for (const auto& [name, tolerance] : of_object_) {
     if (tolerance.any() && names.count(name)) text += "tolerance body " + word(name) + toleranceText(tolerance);
   }
+  for (const auto& [name, of] : speeds_) {
+    if (of.speed > 0 && names.count(name))
+      text += "tolerance speed " + word(name) + " " + numberText(of.speed) + " " + numberText(of.since) + "\n";
+  }
   for (Body& body : world.bodies) {
     const auto own = of_object_.find(body.name);
     if (own != of_object_.end() && own->second.any()) body.gives.push_back(giveOf(own->second));
-    world.tolerant = world.tolerant || !body.gives.empty();
+    const auto speed = speeds_.find(body.name);
+    if (speed != speeds_.end()) body.speed = speed->second;
+    world.clocked = world.clocked || body.speed.speed > 0;
+    world.tolerant = world.tolerant || world.clocked || !body.gives.empty();
   }
   for (const Frame& frame : world.frames) world.tolerant = world.tolerant || !frame.gives.empty();
   for (const auto& [reason, a, b] : unchecked_) text += "unchecked " + reason + " " + word(a) + " " + word(b) + "\n";

@@ -72,6 +72,7 @@ struct Body {
   std::int32_t number;        ///< as the registry counts bodies
   double own_margin = -1;     ///< of its name, m; -1: none
   std::vector<Give> gives;    ///< of its pose, in the geometry's frame: none or one
+  ObjectSpeed speed;          ///< at which it may move by itself
   std::vector<int> partners;  ///< bodies of lower number that make a checked pair with it, ascending
 };
 
@@ -82,7 +83,8 @@ struct World {
   std::vector<Body> bodies;  ///< obstacles that stand still first, unbounded ones before the others; then those that
                              ///< move; then what links carry
   NamedMargins margins;
-  bool tolerant = false;  ///< a frame or a body gives
+  bool tolerant = false;  ///< a frame or a body gives, or a body moves by itself
+  bool clocked = false;   ///< a body moves by itself: motions state their clock
   /// Polynomials of moving obstacles' variables over t in [0, 1], column k for t^k: rows for variables from
   /// `first_moving` on.
   Eigen::MatrixXd moving;

@@ -43,7 +43,7 @@ struct ArticulatedCollisionManager::Impl {
     if (!world_) {
       const NamedTolerances& named = registry.tolerances();
       const certificate::WorldTolerances tolerances = {named.straysOf(*registry.tree()).of_joint, named.base(),
-                                                       named.ofObjects()};
+                                                       named.ofObjects(), named.speeds()};
       world_ = std::make_shared<const certificate::World>(certificate::makeWorld(registry, tolerances));
     }
     return world_;

@@ -258,9 +258,6 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
     throw std::invalid_argument(
         "Method::redon2004 does not know tolerances of joints, base or objects; resetTolerances() takes them away");
   }
-  if (setup.moves() && request.certificate) {
-    throw std::invalid_argument("certificates do not state that objects move by themselves (setObjectSpeed)");
-  }
   engine::Query query = makeQuery(request);
   query.check_scene = request.check_scene;
   query.tube = {context.stray_factor, context.clock};

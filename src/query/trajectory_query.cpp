@@ -15,6 +15,7 @@
 // ignored again.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -37,6 +38,15 @@ Bracket inTrajectoryTime(const Bracket& part, const PieceTime& clock, double end
   if (part.isFree()) return {Status::free, end, end, false};
   const double proven_by = engine::provenBy(part);
   return {part.status, clock.lower(part.t_lower), proven_by <= 1 ? clock.upper(proven_by) : end, part.certain};
+}
+
+/// The time from the trajectory's begin to the k-th of its times, rounded up: a certificate states it.
+double elapsedAt(const JointTrajectory& trajectory, std::size_t k) {
+  const double begin = trajectory.beginTime(), time = trajectory.times()[k], elapsed = time - begin;
+  if (k == 0) return 0;
+  // The error of the difference is a double: that of the rounded one from both numbers.
+  const double taken = time - elapsed, error = (time - (elapsed + taken)) + (taken - begin);
+  return error > 0 ? std::nextafter(elapsed, HUGE_VAL) : elapsed;
 }
 
 void add(QueryStatistics& sum, const QueryStatistics& s) {
@@ -104,6 +114,8 @@ void ArticulatedCollisionManager::collideTrajectory(const JointTrajectory& traje
     collideMotion(trajectory.piece(k), own, context, part);
     if (request.certificate && !contact_found) {
       impl_->appendClaim(trajectory.piece(k), context.time, own, part, details, claim);
+      claim.pieces.back().clock_begin = elapsedAt(trajectory, k);
+      claim.pieces.back().clock_end = elapsedAt(trajectory, k + 1);
     }
     add(sum.statistics, part.statistics);
     sum.never_apart_pairs = part.never_apart_pairs;  // so far

@@ -73,6 +73,37 @@ TEST_F(SpeedProgramTest, ANameStandsForAllShapes) {
   EXPECT_EQ(run(ask + write("long.csv", way(4)) + " --speed person=0.1").status, 1);
 }
 
+#ifdef FCL_ARTIC_VERIFY
+TEST_F(SpeedProgramTest, CertificatesStateSpeedsWithTheTimesOfThePlan) {
+  const auto verify = [&](const std::string& name, const std::string& more) {
+    const std::string command = std::string("\"") + FCL_ARTIC_VERIFY + "\" " + more + " " + path(name + ".world") +
+                                " " + path(name) + " >" + path("said") + " 2>&1";
+    const int status = std::system(command.c_str());
+    return Outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(path("said")), ""};
+  };
+  const auto plan = [&](const std::string& name, double duration) { return "--plan " + write(name, way(duration)); };
+  ASSERT_EQ(check(way(3.6), "--speed ball=0.1 --certificate " + path("proof")).status, 0);
+  ASSERT_EQ(certify("a.csv", way(3.6), "--speed ball=0.1 --certificate " + path("certified")).status, 0);
+  for (const char* name : {"proof", "certified"}) {
+    const Outcome same = verify(name, plan("same.csv", 3.6));
+    EXPECT_EQ(same.status, 0) << same.out;
+    EXPECT_NE(same.out.find("for every way of 'ball' at up to 0.1 m/s from 0 s on, "), std::string::npos) << same.out;
+    EXPECT_EQ(verify(name, plan("sooner.csv", 3.5)).status, 0) << "the ball gets less far";
+    const Outcome later = verify(name, plan("later.csv", 3.601));
+    EXPECT_EQ(later.status, 1) << "the ball gets farther";
+    EXPECT_NE(later.out.find("bodies that move by themselves get farther"), std::string::npos) << later.out;
+    const Outcome timeless = verify(name, "--plan " + write("none.csv", "hinge,rail\n0,0\n0,0.1\n-1e-7,0.2\n"));
+    EXPECT_EQ(timeless.status, 1);
+    EXPECT_NE(timeless.out.find("has no times"), std::string::npos) << timeless.out;
+  }
+  // Up to where the ball may be met, and no farther.
+  ASSERT_EQ(check(way(4), "--speed ball=0.1 --certificate " + path("met")).status, 1);
+  const Outcome met = verify("met", plan("met.csv", 4));
+  EXPECT_EQ(met.status, 0) << met.out;
+  EXPECT_NE(met.out.find("until t = "), std::string::npos) << met.out;
+}
+#endif
+
 TEST_F(SpeedProgramTest, RefusesPlansWithoutAClock) {
   const std::string speed = "--speed ball=0.1 ";
   expectRefused(run("check " + armAndBall() + " --from 0,0 --to 0,0.1 " + speed), "--trajectory");
@@ -107,8 +138,6 @@ TEST_F(SpeedProgramTest, RefusesMessagesInParts) {
 TEST_F(SpeedProgramTest, RefusesWhatSplitsPlans) {
   const std::string speed = " --speed ball=0.1 ", arm_ball = armAndBall();
   expectRefused(certify("a.csv", way(3.6), "--mend" + speed), "without --speed");
-  expectRefused(certify("a.csv", way(3.6), "--certificate " + path("proof") + speed), "leave --certificate out");
-  expectRefused(check(way(3.6), "--certificate " + path("proof") + speed), "leave --certificate out");
   expectRefused(run("bench robot " + arm() + " --scene " + ball() + speed), "check --trajectory");
   expectRefused(run("roadmap make " + arm_ball + speed + "--out " + path("map.csv")), "check --trajectory");
   expectRefused(run("certify --edges " + write("edges.h5", "none") + " " + arm_ball + speed + "--out " + path("edges")),

@@ -157,6 +157,43 @@ TEST(CertificateTube, ToleranceOfEveryJoint) {
   EXPECT_FALSE(forged);
 }
 
+// Forged records of an object that moves by itself: of a smaller speed, a later begin, another clock.
+TEST(CertificateTube, SpeedsAreStatedWithTheirClock) {
+  EveryJoint every;
+  every.tolerances = {};
+  every.tolerances.speeds["post"] = {0.25, 0};
+  every.tolerances.speeds["nobody"] = {1, 0};
+  const certificate::World world = certificate::makeWorld(*every.registry, every.tolerances);
+  EXPECT_EQ(linesOf(*world.text, "tolerance"), "tolerance speed post 0x1p-2 0x0p+0\n");
+  const Certificate certificate = certify(world, every.motion());
+  EXPECT_EQ(linesOf(certificate.motion, "clock"), "clock 0x0p+0 0x1p+0\n");
+  expectProven(certificate);
+  // A faster one gets to the robot.
+  every.tolerances.speeds["post"].speed = 2;
+  const certificate::World fast = certificate::makeWorld(*every.registry, every.tolerances);
+  EXPECT_FALSE(certify(fast, every.motion()));
+  // The proof of the slow one, or one that knows of no speed, proves nothing of the fast one; nor one of another world.
+  certificate::World bare = fast;
+  for (certificate::Body& body : bare.bodies) body.speed = {};
+  Certificate lie = certify(bare, every.motion());
+  ASSERT_TRUE(lie);
+  EXPECT_FALSE(verdictOn(lie).verified);
+  lie.proof.replace(32, std::string::npos, certificate.proof.substr(32));
+  EXPECT_FALSE(verdictOn(lie).verified);
+  for (const auto& [from, to] : {std::pair("0x1p-2 0x0p+0", "0x1p-3 0x0p+0"), {"0x1p-2 0x0p+0", "0x1p-2 0x1p-1"}}) {
+    Certificate other = certificate;  // a smaller speed, a later begin: of these the record does not speak
+    std::string text = *certificate.world;
+    text.replace(text.find(from), std::string(from).size(), to);
+    other.world = std::make_shared<const std::string>(text);
+    const verify::Verdict verdict = verdictOn(other);
+    EXPECT_NE(verdict.reason.find("about another world"), std::string::npos) << verdict.reason;
+  }
+  Certificate slower = certificate;  // a clock that goes slower: of this the proof does not speak
+  slower.motion.replace(slower.motion.find("clock 0x0p+0 0x1p+0"), 19, "clock 0x0p+0 0x1p-1");
+  const verify::Verdict verdict = verdictOn(slower);
+  EXPECT_NE(verdict.reason.find("about another motion"), std::string::npos) << verdict.reason;
+}
+
 // Without tolerances, a world has the bytes that it had before there were any.
 TEST(CertificateTube, NoToleranceNoLine) {
   const EveryJoint every;
@@ -258,6 +295,7 @@ struct RandomTube {
     }
     if (random.oneIn(2)) tolerances.of_base = anyPose(random, size);
     if (random.oneIn(2)) tolerances.of_object["o0"] = anyPose(random, size);
+    if (random.oneIn(2)) tolerances.speeds["o1"] = {random.uniform(0.1, 1) * size, random.uniform(-0.5, 0.8)};
     Eigen::VectorXd q0(tree->dof()), q1(tree->dof());
     for (int v = 0; v < tree->dof(); ++v) {
       q0[v] = random.uniform(-1, 1);
@@ -277,6 +315,7 @@ void multiply(WorldTolerances& tolerances, double factor) {
   const auto pose = [&](PoseTolerance& t) { t = {factor * t.length, factor * t.angle, t.pivot}; };
   pose(tolerances.of_base);
   for (auto& entry : tolerances.of_object) pose(entry.second);
+  for (auto& entry : tolerances.speeds) entry.second.speed *= factor;
 }
 
 /// Samples of the tube by the kinematics of the verifier's tests, which are no part of the library.
@@ -297,7 +336,10 @@ class Samples {
 Certificate claimAlone(const certificate::World& world, const RandomTube& tube) {
   certificate::World bare = world;  // the same text, and nothing that gives
   for (certificate::Frame& frame : bare.frames) frame.gives.clear();
-  for (certificate::Body& body : bare.bodies) body.gives.clear();
+  for (certificate::Body& body : bare.bodies) {
+    body.gives.clear();
+    body.speed = {};
+  }
   bare.tolerant = false;
   return certify(bare, tube.motion);
 }

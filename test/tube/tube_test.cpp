@@ -345,6 +345,21 @@ TEST(Speed, ATrajectoryHasItsOwnTime) {
   EXPECT_LE(clearance.upper, 1.06 * (1 - 0.2 - 0.5 * 1.5));
 }
 
+TEST(Speed, CertificatesStateItWithTheTrajectorysTime) {
+  CartAndPerson scene(Vector3d(0, 1, 0), {0.5, 0.25});
+  const VectorXd here = VectorXd::Zero(1), there = VectorXd::Constant(1, 1e-3);
+  const JointTrajectory way = JointTrajectory::linear(*scene.cart.tree, {0.1, 0.4, 1.5}, {here, there, here});
+  CertifiedRequest request;
+  request.certificate = true;
+  const CertifiedResult free = scene.cart.manager->continuousCollide(way, request);
+  ASSERT_TRUE(free.isFree() && free.certificate && *free.certificate) << free.certificate->missing;
+  EXPECT_NE(free.certificate->world->find("\ntolerance speed person 0x1p-1 0x1p-2\n"), std::string::npos);
+  // A clock is rounded up: the double that is nearest to 1.5 - 0.1 is 0x1.6666666666666p+0, which is less.
+  for (const char* clock :
+       {"\nclock 0x0p+0 0x1.3333333333334p-2\n", "\nclock 0x1.3333333333334p-2 0x1.6666666666667p+0\n"})
+    EXPECT_NE(free.certificate->motion.find(clock), std::string::npos) << free.certificate->motion;
+}
+
 TEST(Speed, WhatIsRefused) {
   CartAndPerson scene(Vector3d(0, 1, 0), {1.5, 0});
   ArticulatedCollisionManager& manager = *scene.cart.manager;
@@ -354,9 +369,6 @@ TEST(Speed, WhatIsRefused) {
   EXPECT_THROW(manager.setObjectSpeed("person", {1, std::nan("")}), std::invalid_argument);
   EXPECT_NE(manager.describeTolerances().find("person"), std::string::npos);
   CertifiedRequest request;
-  request.certificate = true;
-  EXPECT_THROW(scene.cart.run(0, 1, request), std::invalid_argument);
-  request = {};
   request.method = Method::redon2004;
   EXPECT_THROW(scene.cart.run(0, 1, request), std::invalid_argument);
   // Speeds go with their object, and stay with its name where it is replaced.

@@ -80,6 +80,31 @@ TEST_F(VerifyPlan, WaypointsAreThoseOfTheMotion) {
   EXPECT_NE(said(motion({first + q(2, {0, 1}), second + q(2, {1})}), csv).find("'door' moves"), std::string::npos);
 }
 
+// Bodies that move by themselves have as long as the plan takes: it may be no later than the motion's clock.
+TEST_F(VerifyPlan, IsNowhereLaterThanTheClock) {
+  const auto clock = [](double from, double to) { return "clock " + hex(from) + " " + hex(to) + "\n"; };
+  const std::string first = q(0, {0.1, kStep}), second = q(0, {0.7, 0.5});
+  std::string text = kHead + "variable a\nframe f 0 " + hex(M{}) + "\nturn " + hex(V{0, 0, 1}) + " 0 " + hex(1) + " " +
+                     hex(0) + "\ngeometry sphere " + hex(1) + "\nbody link f 1 0 " + hex(M{}) +
+                     "\nbody obstacle person 0 0 " + hex(M{}) + "\ntolerance speed person " + hex(1) + " " + hex(0) +
+                     "\n";
+  world_ = readWorld(text);
+  const Motion timed = motion({clock(0, 2) + first, clock(2, 3) + second});
+  for (const char* good :
+       {"time,a\n0,0.1\n2,0.7\n3,1.2\n", "time,a\n5,0.1\n7,0.7\n8,1.2\n", "time,a\n0,0.1\n1,0.7\n3,1.2\n"})
+    EXPECT_EQ(said(timed, good), "same") << good;
+  EXPECT_TRUE(noted("timings that are nowhere later than its clock"));
+  EXPECT_FALSE(noted("every timing"));
+  for (const char* wrong : {"time,a\n0,0.1\n2.0000000000000004,0.7\n3,1.2\n", "time,a\n0,0.1\n2,0.7\n3.5,1.2\n",
+                            "time,a\n-1,0.1\n2,0.7\n3,1.2\n"})
+    EXPECT_NE(said(timed, wrong).find("bodies that move by themselves get farther"), std::string::npos) << wrong;
+  EXPECT_NE(said(timed, "a\n0.1\n0.7\n1.2\n").find("has no times"), std::string::npos);
+  // 1 + 2^-60 s after the beginning: the difference of the doubles is 1.
+  const Motion exact = motion({clock(0, 1) + first, clock(1, 3) + second});
+  EXPECT_EQ(said(exact, "time,a\n0,0.1\n1,0.7\n3,1.2\n"), "same");
+  EXPECT_NE(said(exact, "time,a\n-8.673617379884035e-19,0.1\n1,0.7\n2,1.2\n"), "same");
+}
+
 TEST_F(VerifyPlan, WhatHasNoColumnStandsAsTheStateSays) {
   const std::string csv = "a\n0.1\n0.7\n";
   const Motion moved = motion({q(0, {0.1, kStep}) + q(1, {0.25})});

@@ -55,6 +55,27 @@ inline std::vector<M> bodiesWith(const World& world, const Motion& motion, std::
   return Sampler(world, motion, &errors).bodies(piece, t);
 }
 
+/// How far a body can have come by itself.
+inline double wayAt(const World& world, const Motion& motion, std::size_t piece, double t, std::size_t body) {
+  const auto own = world.speeds.find(world.bodies[body].name_id);
+  if (own == world.speeds.end()) return 0;
+  const double* const clock = motion.pieces[piece].clock;
+  return own->second.speed * std::max(0.0, clock[0] + t * (clock[1] - clock[0]) - own->second.since);
+}
+
+/// Moves bodies by all of their ways, or a part: anywhere, or straight to another body.
+inline void moveByThemselves(Rng& rng, const World& world, const Motion& motion, std::size_t piece, double t,
+                             std::vector<M>& poses) {
+  if (world.speeds.empty()) return;
+  for (std::size_t b = 0; b < poses.size(); ++b) {
+    const double way = wayAt(world, motion, piece, t, b) * (rng() % 3 ? 1 : uniform(rng, 0, 1));
+    if (way == 0) continue;
+    const V to = poses[rng() % poses.size()].t - poses[b].t;
+    const double far = norm(to);
+    poses[b].t = poses[b].t + (far > 0 && rng() % 4 ? (std::min(way, far) / far) * to : anyVector(rng, way));
+  }
+}
+
 /// A ball around the geometry's own origin that holds it; of one without bounds 1e9.
 inline double radiusOf(const Geometry& g) {
   if (g.unbounded()) return 1e9;
@@ -80,7 +101,8 @@ inline bool tubeIsFalse(Rng& rng, const World& world, const Motion& motion, int 
   for (int n = 0; n < samples; ++n) {
     const std::size_t piece = static_cast<std::size_t>(rng()) % motion.pieces.size();
     const double t = (piece + 1 == motion.pieces.size() ? motion.until : 1) * uniform(rng, 0, 1);
-    const std::vector<M> poses = bodiesWith(world, motion, piece, t, anyErrors(rng, world));
+    std::vector<M> poses = bodiesWith(world, motion, piece, t, anyErrors(rng, world));
+    moveByThemselves(rng, world, motion, piece, t, poses);
     for (std::size_t a = 0; a < world.bodies.size(); ++a)
       for (const Opponent& o : opponents(world, motion, piece, static_cast<int>(a)))
         if (t >= toDouble(o.from) && mayBeNear(poses, a, static_cast<std::size_t>(o.body), toDouble(o.margin)) &&
@@ -135,6 +157,8 @@ inline double movesBetween(const World& world, const Motion& motion, std::size_t
       const PoseTolerance t = of(world.body_tolerances, own.name_id);
       const V pivot = bodies[static_cast<std::size_t>(body)] * V{t.pivot[0], t.pivot[1], t.pivot[2]};
       add(pivot, t.length, chord(t.angle));
+      const double way = wayAt(world, motion, piece, n / 8.0, static_cast<std::size_t>(body));
+      for (double& of_side : sum) of_side += way;
     }
     most = std::max(most, std::min(sum[0], sum[1]));
   }
@@ -161,7 +185,8 @@ struct ToleranceLines {
 };
 
 /// Tolerances at random for a world of anyCase().
-inline ToleranceLines anyTolerances(Rng& rng, const World& world) {
+/// @param speeds  obstacles may have some.
+inline ToleranceLines anyTolerances(Rng& rng, const World& world, bool speeds) {
   ToleranceLines t;
   const double size = std::pow(10, uniform(rng, -4, -1.5));
   const auto d = [&]() { return size * uniform(rng, 0.2, 1); };
@@ -181,19 +206,35 @@ inline ToleranceLines anyTolerances(Rng& rng, const World& world) {
     if (body.role == Role::obstacle && rng() % 3 == 0 &&
         !world.geometries[static_cast<std::size_t>(body.geometry)].unbounded())
       t.lines.push_back({"body " + body.name, {d(), d()}, pivot(0.2)});
+  for (const Body& body : world.bodies)
+    if (speeds && body.role == Role::obstacle && rng() % 2) {
+      t.lines.push_back({"speed " + body.name, {d()}, " " + hex(rng() % 2 ? 0 : uniform(rng, -1, 2))});
+      if (rng() % 2) t.lines.erase(t.lines.begin(), t.lines.end() - 1);  // and nothing else
+      break;
+    }
   if (t.lines.empty()) t.lines.push_back({"frame 1", {d(), d()}, pivot(0.3)});
   return t;
 }
 
 struct TubeCounts {
   int verified = 0, refused = 0, falsified = 0, forged = 0, accepted = 0;
+  int with_speeds = 0;  ///< of those that are verified
 };
+
+/// The motion, with a clock in each piece where the world has speeds.
+inline MotionText withClock(MotionText motion, const World& world, double step) {
+  for (std::size_t k = 0; k < motion.pieces.size() && !world.speeds.empty(); ++k)
+    motion.pieces[k] = "clock " + hex(static_cast<double>(k) * step) + " " + hex(static_cast<double>(k + 1) * step) +
+                       "\n" + motion.pieces[k];
+  return motion;
+}
 
 /// Random tubes with proofs by samples. No sample of a verified one may be nearer than its margin. Then all
 /// tolerances grow until a sample shows the claim to be false: with the same proof, and one made for it, it is refused.
 /// @param verified, forged  ends when there are as many of both.
+/// @param speeds  bodies move by themselves, too: then speeds, not clocks, grow with the tolerances.
 /// @param keep  is given the world and the record of each that is verified.
-inline TubeCounts tubeCampaign(std::uint64_t seed, int verified, int forged, int samples,
+inline TubeCounts tubeCampaign(std::uint64_t seed, int verified, int forged, int samples, bool speeds,
                                const std::function<void(const std::string&, const std::string&)>& keep = {}) {
   Rng rng(seed);
   TubeCounts counts;
@@ -215,9 +256,10 @@ inline TubeCounts tubeCampaign(std::uint64_t seed, int verified, int forged, int
     const Case c = anyCase(rng);
     const World bare = readWorld(c.world_text);
     if (Motion m = readMotion(c.motion.write(bare), bare); tubeIsFalse(rng, bare, m, 20)) continue;
-    const ToleranceLines lines = anyTolerances(rng, bare);
+    const ToleranceLines lines = anyTolerances(rng, bare, speeds);
+    const double step = speeds ? uniform(rng, 0.2, 2) : 0;
     const World world = readWorld(c.world_text + lines.write(1));
-    const std::string claim = c.motion.write(world);
+    const std::string claim = withClock(c.motion, world, step).write(world);
     const Motion motion = readMotion(claim, world);
     const std::string nodes = provenWith(world, motion);
     if (!judge(world, record(claim, nodes), options).verified) {
@@ -225,12 +267,13 @@ inline TubeCounts tubeCampaign(std::uint64_t seed, int verified, int forged, int
       continue;
     }
     ++counts.verified;
+    counts.with_speeds += !world.speeds.empty();
     if (keep) keep(c.world_text + lines.write(1), record(claim, nodes));
     if (tubeIsFalse(rng, world, motion, samples)) ++counts.falsified;
     // The least factor of a few that a sample shows to be too large.
     for (double factor = 1.25; factor < 1e4; factor *= 1.25) {
       const World larger = readWorld(c.world_text + lines.write(factor));
-      const std::string lie = c.motion.write(larger);
+      const std::string lie = withClock(c.motion, larger, step).write(larger);
       const Motion moved = readMotion(lie, larger);
       if (!tubeIsFalse(rng, larger, moved, 40)) continue;
       ++counts.forged;
