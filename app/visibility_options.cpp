@@ -15,15 +15,10 @@
 namespace fcl_artic::app {
 
 void addVisibilityOptions(CLI::App& verb, VisibilityChoice& o) {
-  const auto gone = [](const std::string& mode) -> std::string {
-    if (mode != "automatic" && mode != "at-once") return {};
-    return "the mode " + mode + " is gone: with on and off answers are the same, and on takes less time in some scenes";
-  };
   verb.add_option_function<std::string>(
           "--visibility",
           [&o](const std::string& mode) { o.mode = mode == "on" ? VisibilityMode::on : VisibilityMode::off; },
           "Stage 2, culling by visibility: off or on. Answers are the same")
-      ->check(gone)
       ->check(CLI::IsMember({"off", "on"}))
       ->default_str("off")
       ->group("Stage 2");

@@ -71,17 +71,12 @@ struct RedonStatistics {
 
 /// Work of stage 2, culling by visibility (doc/VISIBILITY.md).
 struct VisibilityStatistics {
-  std::uint64_t pairs = 0;          ///< Pairs that it looked at.
-  std::uint64_t culled = 0;         ///< Pairs that it proved free.
-  std::uint64_t nodes = 0;          ///< Nodes of large bodies that it proved free, in other pairs.
-  std::uint64_t pieces = 0;         ///< Pieces of the other bodies that it drew.
-  std::uint64_t trials = 0;         ///< Always 0: no query is answered both ways to compare.
-  std::uint64_t repeated = 0;       ///< Queries that were solved again without it, as they were not simply free.
-  double us = 0;                    ///< Time, µs; always measured.
-  std::uint64_t link_pairs = 0;     ///< Of `pairs`, those of two links.
-  std::uint64_t link_culled = 0;    ///< Of `culled`, those of two links.
-  std::uint64_t moving_pairs = 0;   ///< Of `pairs`, those of a link and an obstacle that moves.
-  std::uint64_t moving_culled = 0;  ///< Of `culled`, those of a link and an obstacle that moves.
+  std::uint64_t pairs = 0;     ///< Pairs that it looked at.
+  std::uint64_t culled = 0;    ///< Pairs that it proved free.
+  std::uint64_t nodes = 0;     ///< Nodes of large bodies that it proved free, in other pairs.
+  std::uint64_t pieces = 0;    ///< Pieces of the other bodies that it drew.
+  std::uint64_t repeated = 0;  ///< Queries that were solved again without it, as they were not simply free.
+  double us = 0;               ///< Time, µs; always measured.
 
   /// Calls visit(name, pointer to member) for every field.
   template <class Visit>
@@ -91,13 +86,8 @@ struct VisibilityStatistics {
     visit("culled", &S::culled);
     visit("nodes", &S::nodes);
     visit("pieces", &S::pieces);
-    visit("trials", &S::trials);
     visit("repeated", &S::repeated);
     visit("us", &S::us);
-    visit("link_pairs", &S::link_pairs);
-    visit("link_culled", &S::link_culled);
-    visit("moving_pairs", &S::moving_pairs);
-    visit("moving_culled", &S::moving_culled);
   }
 };
 

@@ -14,17 +14,9 @@
 
 namespace fcl_artic {
 
-/// The rule by which a piece of an obstacle is proven free of what a link sweeps (doc/VISIBILITY.md, "The rule").
-enum class VisibilityRule {
-  /// Each convex piece of an obstacle is compared with the swept volume's interval of depth, pixel by pixel.
-  intervals,
-};
-
 /// Options of a VisibilityCuller.
 struct VisibilityOptions {
-  VisibilityRule rule = VisibilityRule::intervals;  ///< The rule by which obstacles are proven free.
-  int resolution = 32;                              ///< Pixels along a side of each view, 4 to 128.
-  bool every_link_pair = false;                     ///< Must be false: of links the stage picks the pairs itself.
+  int resolution = 32;  ///< Pixels along a side of each view, 4 to 128.
 };
 
 class VisibilityCuller;
@@ -33,10 +25,10 @@ class VisibilityCuller;
 namespace visibility {
 /// Draws what links sweep and the obstacles near it, and judges by the rule; internal.
 class Executor;
-/// Volumes to be drawn for one query; internal.
-struct Batch;
+/// The volumes that are drawn for one link; internal.
+struct Drawing;
 /// Has a culler's executor draw; internal.
-std::string runBy(const VisibilityCuller& culler, const Batch& batch, std::vector<std::uint8_t>& may);
+std::string drawBy(const VisibilityCuller& culler, const Drawing& drawing, std::vector<std::uint8_t>& may);
 /// Function that makes an executor, which one thread at a time uses. It throws std::runtime_error naming what is
 /// missing.
 using ExecutorFactory = std::function<std::unique_ptr<Executor>()>;
@@ -70,8 +62,8 @@ class FCL_ARTIC_EXPORT VisibilityCuller {
   std::string fallbackReason() const;
 
  private:
-  friend std::string visibility::runBy(const VisibilityCuller& culler, const visibility::Batch& batch,
-                                       std::vector<std::uint8_t>& may);
+  friend std::string visibility::drawBy(const VisibilityCuller& culler, const visibility::Drawing& drawing,
+                                        std::vector<std::uint8_t>& may);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

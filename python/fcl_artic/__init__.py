@@ -26,7 +26,6 @@ from ._enums import (
     Status,
     VisibilityExecutor,
     VisibilityMode,
-    VisibilityRule,
 )
 from ._fcl_artic import (
     Answers,
@@ -160,7 +159,6 @@ __all__ = [
     "ToolDeviation",
     "VisibilityExecutor",
     "VisibilityMode",
-    "VisibilityRule",
     "World",
     "__version__",
     "box",

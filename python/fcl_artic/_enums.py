@@ -35,12 +35,6 @@ class VisibilityMode(enum.Enum):
     ON = "on"
 
 
-class VisibilityRule(enum.Enum):
-    """The rule by which a piece of an obstacle is proven free of what a link sweeps."""
-
-    INTERVALS = "intervals"
-
-
 class VisibilityExecutor(enum.Enum):
     """Who culls by visibility: the library's own scan conversion, or OpenGL without a window."""
 
@@ -115,16 +109,3 @@ class LinkPairKind(enum.Enum):
     """In contact in some configurations and not in others."""
     UNPROVEN = "unproven"
     """In contact in no configuration that was tried, and yet not proven apart."""
-
-
-_MODE_IS_GONE = "that mode is gone: with 'on' and 'off' answers are the same"
-_GONE = {
-    (VisibilityMode, "automatic"): _MODE_IS_GONE,
-    (VisibilityMode, "at_once"): _MODE_IS_GONE,
-    (VisibilityRule, "occlusion"): "that rule is gone: 'intervals' proves the same of more obstacles",
-}
-
-
-def note_on_gone(enumeration: type[enum.Enum], value: str) -> str:
-    """The advice on a value that an enumeration no longer has; empty for others."""
-    return _GONE.get((enumeration, value), "")

@@ -17,7 +17,6 @@ from ._enums import (
     Status,
     VisibilityExecutor,
     VisibilityMode,
-    VisibilityRule,
 )
 from ._guard import AheadAnswer, GuardAnswer
 from ._picture import Picture
@@ -846,14 +845,7 @@ class World:
     @property
     def tolerances(self) -> str: ...
     def set_proofs(self, proofs: LinkPairProofs | None) -> None: ...
-    def set_visibility(
-        self,
-        executor: VisibilityExecutor | str = ...,
-        *,
-        rule: VisibilityRule | str = ...,
-        resolution: int = ...,
-        every_link_pair: bool = ...,
-    ) -> None: ...
+    def set_visibility(self, executor: VisibilityExecutor | str = ..., *, resolution: int = ...) -> None: ...
     def prepare_for(self, method: Method | str) -> None: ...
     def setup(self) -> None: ...
     @overload

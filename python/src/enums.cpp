@@ -28,10 +28,7 @@ int enumValue(const py::list& members, py::handle value, const char* what) {
     if (texts[i] == text) return static_cast<int>(i);
     all += (i == 0 ? "'" : ", '") + texts[i] + "'";
   }
-  const std::string gone =
-      py::str(py::module_::import("fcl_artic._enums").attr("note_on_gone")(py::type::of(members[0]), text));
-  valueError(std::string(what) + " is '" + text + "', which is none of " + all +
-             (gone.empty() ? text::didYouMean(text, texts) : "; " + gone));
+  valueError(std::string(what) + " is '" + text + "', which is none of " + all + text::didYouMean(text, texts));
 }
 
 }  // namespace fcl_artic::python

@@ -27,7 +27,6 @@ const char* enumName();
 template <> inline const char* enumName<Status>() { return "Status"; }
 template <> inline const char* enumName<ContactMode>() { return "ContactMode"; }
 template <> inline const char* enumName<VisibilityMode>() { return "VisibilityMode"; }
-template <> inline const char* enumName<VisibilityRule>() { return "VisibilityRule"; }
 template <> inline const char* enumName<VisibilityExecutor>() { return "VisibilityExecutor"; }
 template <> inline const char* enumName<Method>() { return "Method"; }
 template <> inline const char* enumName<MotionEnclosure>() { return "MotionEnclosure"; }

@@ -625,15 +625,13 @@ void bindChanges(py::class_<World>& world) {
           "Uses proofs of pairs of links that never touch (LinkPairReport.proofs); None: none.", py::arg("proofs"))
       .def(
           "set_visibility",
-          [](World& w, py::handle executor, py::handle rule, int resolution, bool every_link_pair) {
-            const auto culler = cullerOf(enumOf<VisibilityExecutor>(executor, "executor"),
-                                         {enumOf<VisibilityRule>(rule, "rule"), resolution, every_link_pair});
+          [](World& w, py::handle executor, int resolution) {
+            const auto culler = cullerOf(enumOf<VisibilityExecutor>(executor, "executor"), {resolution});
             w.manager().change([&](ArticulatedCollisionManager& m) { m.setVisibility(culler); });
           },
           "Selects who culls by visibility in queries that ask for it (Request.visibility). `resolution`: pixels along "
-          "a side of each view. `every_link_pair` must be False.",
-          py::arg("executor") = "cpu", py::kw_only(), py::arg("rule") = "intervals", py::arg("resolution") = 32,
-          py::arg("every_link_pair") = false)
+          "a side of each view.",
+          py::arg("executor") = "cpu", py::kw_only(), py::arg("resolution") = 32)
       .def(
           "prepare_for",
           [](World& w, py::handle method) {

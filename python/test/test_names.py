@@ -103,7 +103,6 @@ REACHABLE = {
     "SolidMark": "Geometry.solid",
     "makeSolid": "Geometry.as_solid",
     # visibility.h, visibility/offscreen.h
-    "VisibilityRule": "VisibilityRule",
     "VisibilityOptions": "World.set_visibility",
     "VisibilityCuller": "World.set_visibility",
     "OffscreenBackend": "VisibilityExecutor",

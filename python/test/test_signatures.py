@@ -70,8 +70,7 @@ def test_signatures_name_types_and_the_values_of_what_is_left_out():
     assert first(fcl_artic.Mimic.__init__) == "Mimic(master: str, multiplier: float = 1.0, offset: float = 0.0)"
     assert first(fcl_artic.World.check) == "check(q0: array, q1: array, **options) -> Result"
     assert first(fcl_artic.World.set_visibility) == (
-        "set_visibility(executor: VisibilityExecutor | str = 'cpu', *, rule: VisibilityRule | str = 'intervals', "
-        "resolution: int = 32, every_link_pair: bool = False) -> None")
+        "set_visibility(executor: VisibilityExecutor | str = 'cpu', *, resolution: int = 32) -> None")
     assert first(fcl_artic.World.attach) == ("attach(name: str, link: str | int, offset: pose | None = None, "
                                              "touch_links: Sequence[str] = []) -> None")
     assert fcl_artic.World.check.__doc__.split("\n")[1:4] == [

@@ -586,16 +586,8 @@ def test_visibility_does_not_change_answers(world, hit, miss):
     assert world.check(*hit, visibility=fcl_artic.VisibilityMode.ON).statistics["visibility_executor"] == "cpu"
     with pytest.raises(ValueError, match="resolution"):
         world.set_visibility("cpu", resolution=3)
-
-
-def test_options_of_visibility_that_are_gone_say_what_to_use(world, hit):
-    for mode in ("automatic", "at_once"):
-        with pytest.raises(ValueError, match="that mode is gone: with 'on' and 'off' answers are the same"):
-            world.check(*hit, visibility=mode)
-    with pytest.raises(ValueError, match="'intervals' proves the same"):
-        world.set_visibility("cpu", rule="occlusion")
-    with pytest.raises(ValueError, match="every_link_pair is gone"):
-        world.set_visibility("cpu", every_link_pair=True)
+    with pytest.raises(ValueError, match="visibility is 'automatic', which is none of 'off', 'on'"):
+        world.check(*hit, visibility="automatic")
 
 
 def test_objects_are_kept_alive_as_long_as_they_are_used(data, miss):

@@ -16,7 +16,7 @@ namespace engine {
 /// Half a cache line, and siblings lie side by side: a traversal that descends reads one line.
 struct alignas(32) Node {
   float lo[3], hi[3];
-  float radius;        ///< half the box's diagonal, a size only
+  float radius;        ///< half the box's diagonal, rounded up
   std::int32_t child;  ///< left child, the right one follows it; a leaf has ~piece, which is < 0
   bool isLeaf() const { return child < 0; }
   int left() const { return child; }

@@ -137,7 +137,7 @@ void solve(const Registry& registry, const VisibilityCuller& culler, const Certi
     solved.redon.pairs_by_standard = work.pairs_by_standard;
   };
   if (request.visibility == VisibilityMode::off) return method(query, solved.answer);
-  visibility::solve(culler, method, problem, query, solved.answer, solved.stage);
+  visibility::solve(culler, method, query, solved.answer, solved.stage);
 }
 
 /// A contact as users see it, links before obstacles.

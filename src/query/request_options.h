@@ -5,7 +5,6 @@
 #pragma once
 
 #include <string>
-#include <type_traits>
 
 #include "fcl_artic/request.h"
 
@@ -25,12 +24,6 @@ inline constexpr NamedValue<VisibilityMode> kVisibilityModes[] = {{VisibilityMod
 inline constexpr NamedValue<MotionEnclosure> kMotionEnclosures[] = {{MotionEnclosure::intervalChain, "interval_chain"},
                                                                     {MotionEnclosure::meanValue, "mean_value"},
                                                                     {MotionEnclosure::taylor, "taylor"}};
-/// The advice on a name that an enumeration's values no longer have; empty for other names.
-template <class E>
-const char* noteOnGone(const std::string& name) {
-  if (!std::is_same_v<E, VisibilityMode> || (name != "automatic" && name != "at_once")) return "";
-  return "; that mode is gone: with 'on' and 'off' answers are the same";
-}
 // All names of an enumeration, found by the type of the argument.
 constexpr const auto& namesOf(ContactMode) {
   return kContactModes;

@@ -83,7 +83,7 @@ void read(const Json& json, const std::string& at, E& value) {
     }
     all += std::string(all.empty() ? "" : ", ") + known.name;
   }
-  refuse(at, "is '" + name + "', which is none of " + all + noteOnGone<E>(name));
+  refuse(at, "is '" + name + "', which is none of " + all);
 }
 template <class E, std::enable_if_t<std::is_enum_v<E>, int> = 0>
 Json written(E value) {

@@ -15,106 +15,137 @@ using engine::CullCandidate;
 using engine::SweptLink;
 
 constexpr int kParts = 8;
-/// Most objects of a query: some tens of milliseconds of work.
-constexpr std::size_t kMostObjects = 20000;
-/// Most objects of a pair. If more are left after the 13 directions, they seldom all go, and drawing them costs more
+/// Most pieces of a pair. If more are left after the 13 directions, they seldom all go, and drawing them costs more
 /// than the solver's search. Measured by bench_visibility_map (doc/VISIBILITY.md, "Where it pays").
-constexpr std::size_t kMostObjectsOfPair = 64;
+constexpr std::size_t kMostPiecesOfPair = 64;
 /// A window's side is at least this part of its longest one: pixels stay within reason.
 constexpr double kFlattest = 1.0 / 64;
 
-/// The part of the link's box that the pieces' boxes leave, a little larger. So a point on its border is well within
-/// it, by more than the rounding of its pixel coordinates.
-Window windowOf(const Bounds& link, const Bounds& pieces) {
-  Window window;
-  double longest = 0;
+/// Sets the window: the part of the link's box that the pieces' boxes leave, a little larger. So a point on its border
+/// is well within it, by more than the rounding of its pixel coordinates.
+void setWindow(const Bounds& link, const Bounds& pieces, Drawing& drawing) {
+  double sides[3];
   for (int k = 0; k < 3; ++k) {
-    window.lo[k] = std::max(link.lo[k], pieces.lo[k]);
-    window.hi[k] = std::min(link.hi[k], pieces.hi[k]);
-    longest = std::max(longest, window.hi[k] - window.lo[k]);
+    drawing.lo[k] = std::max(link.lo[k], pieces.lo[k]);
+    drawing.hi[k] = std::min(link.hi[k], pieces.hi[k]);
+    sides[k] = drawing.hi[k] - drawing.lo[k];
   }
+  const double longest = std::max({sides[0], sides[1], sides[2], 0.0});
   for (int k = 0; k < 3; ++k) {
-    const double grow = std::max(0.5 * (kFlattest * longest - (window.hi[k] - window.lo[k])), 0x1p-30 * longest);
-    window.lo[k] -= grow;
-    window.hi[k] += grow;
+    const double grow = std::max(0.5 * (kFlattest * longest - sides[k]), 0x1p-30 * longest);
+    drawing.lo[k] -= grow;
+    drawing.hi[k] += grow;
   }
-  return window;
-}
-
-/// Whether the candidate's other body is a link.
-bool isLink(const engine::Problem& problem, std::int32_t body) {
-  const std::int32_t mover = problem.bodies[body].mover;
-  return mover >= 0 && mover < problem.num_scene_movers;
 }
 
 /// Whether the middle of what a link sweeps comes into the box around the other one, in whose tree frame it is seen.
 /// Only then it takes long to find two links apart: hulls around them do so where each lies on its own side. Without
 /// this the stage costs an arm that is checked against itself twice as much (bench_visibility_map, `itself`).
 bool comesInto(const engine::Node& box, const Bounds* parts, std::uint32_t lanes) {
-  for (int lane = 0; lane < kParts; ++lane) {
-    bool within = lanes >> lane & 1;
-    for (int k = 0; k < 3 && within; ++k) {
-      const double middle = 0.5 * (parts[lane].lo[k] + parts[lane].hi[k]);
-      within = middle >= static_cast<double>(box.lo[k]) && middle <= static_cast<double>(box.hi[k]);
+  for (; lanes; lanes &= lanes - 1) {
+    const Bounds& part = parts[__builtin_ctz(lanes)];
+    bool within = true;
+    for (int k = 0; k < 3; ++k) {
+      const double middle = 0.5 * (part.lo[k] + part.hi[k]);
+      within = within && middle >= static_cast<double>(box.lo[k]) && middle <= static_cast<double>(box.hi[k]);
     }
     if (within) return true;
   }
   return false;
 }
 
-/// The volumes of a query, and the executor's answer.
-struct Drawing {
-  Batch batch;
-  std::vector<CullCandidate*> looked_at, drawn;  ///< of each group one is drawn
-  std::vector<std::uint8_t> may;                 ///< of each group
+class Stage {
+ public:
+  /// @param tolerance_distance  of the query, m: what is nearer stays, since the solver alone may take it for a
+  /// contact.
+  Stage(const VisibilityCuller& culler, double tolerance_distance, Report& report)
+      : culler_(culler), tolerance_distance_(tolerance_distance), report_(report) {}
 
-  void addWindow(const engine::Problem& problem, const SweptLink* link, CullCandidate* candidates, std::int32_t n,
-                 double tolerance_distance);
+  /// engine::Advisor::clear.
+  static void clear(void* stage, const engine::Problem& problem, const SweptLink* links, CullCandidate* candidates,
+                    std::int32_t n) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point begin = Clock::now();
+    auto& self = *static_cast<Stage*>(stage);
+    CullCandidate* const end = candidates + n;
+    for (CullCandidate *from = candidates, *to = from; from < end; from = to) {
+      while (to < end && to->swept == from->swept) ++to;
+      self.look(problem, links + kParts * from->swept, from, to);
+    }
+    self.report_.work.us += std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
+  }
+
+ private:
+  void look(const engine::Problem& problem, const SweptLink* link, CullCandidate* begin, CullCandidate* end);
+  void count(const CullCandidate* pair, const CullCandidate* end);
+
+  const VisibilityCuller& culler_;
+  const double tolerance_distance_;
+  Report& report_;
 };
 
-/// Adds a window with what a link sweeps and those pieces of its candidates that the 13 directions leave. A candidate
-/// of which they leave none is cleared.
-/// @param candidates  the `n` with the same swept volumes.
-/// @param tolerance_distance  of the query, m.
-void Drawing::addWindow(const engine::Problem& problem, const SweptLink* link, CullCandidate* candidates,
-                        std::int32_t n, double tolerance_distance) {
+/// Draws what a link sweeps and those pieces of its candidates that the 13 directions leave. Clears candidates of which
+/// these leave none or of which none may overlap. (Single lanes of a candidate that stays are left as they are: the
+/// solver would find the same, by other roundings.)
+/// @param begin  those that share the swept volumes; until `end`.
+void Stage::look(const engine::Problem& problem, const SweptLink* link, CullCandidate* begin, CullCandidate* end) {
+  thread_local Drawing drawing;
+  thread_local std::vector<CullCandidate*> pairs, drawn;  // first candidates of those looked at; one for each group
+  thread_local std::vector<std::uint8_t> may;
+  drawing.clear();
+  drawing.resolution = culler_.options().resolution;
+  pairs.clear();
+  drawn.clear();
+  Bounds parts[kParts], all, reach;
   std::uint32_t lanes = 0;
-  for (std::int32_t i = 0; i < n; ++i) lanes |= candidates[i].lanes;
-  SweptParts swept;
-  Bounds all = Bounds::none(), reach = Bounds::none();
-  for (int lane = 0; lane < kParts; ++lane) {
-    if (!(lanes >> lane & 1)) continue;
-    swept.parts[lane] = boundsOf(link[lane]);
-    all.join(swept.parts[lane]);
+  for (const CullCandidate* c = begin; c < end; ++c) lanes |= c->lanes;
+  for (int k = 0; k < kParts; ++k) {
+    if (!(lanes >> k & 1)) continue;
+    parts[k] = boundsOf(link[k].points[0], 6, link[k].radius);
+    all.join(parts[k]);
   }
-  const double size = std::max({all.hi[0] - all.lo[0], all.hi[1] - all.lo[1], all.hi[2] - all.lo[2]});
-  swept.least = size / (4 * batch.resolution);  // a quarter of a pixel, before the window is known
-  swept.window = static_cast<std::int32_t>(batch.windows.size());
-  const std::size_t first_object = batch.objects.size();
-  std::size_t most = 0;
   lanes = 0;
-  for (CullCandidate* c = candidates; c < candidates + n; ++c) {
-    const engine::TreeView& tree = *problem.bodies[c->still].tree;
-    if (isLink(problem, c->still) && !comesInto(tree.nodes[0], swept.parts, c->lanes)) continue;
-    looked_at.push_back(c);
-    const std::size_t objects = batch.objects.size();
-    if (c == candidates || c->pair != c[-1].pair) most = std::min(objects + kMostObjectsOfPair, kMostObjects);
+  std::size_t most = 0;
+  for (CullCandidate* c = begin; c < end; ++c) {
+    const engine::Body& still = problem.bodies[c->still];
+    const bool is_link = still.mover >= 0 && still.mover < problem.num_scene_movers;
+    if (is_link && !comesInto(still.tree->nodes[0], parts, c->lanes)) continue;
+    if (pairs.empty() || c->pair != pairs.back()->pair) {
+      pairs.push_back(c);
+      most = drawing.pieces.size() + kMostPiecesOfPair;
+    }
+    const std::size_t before = drawing.pieces.size();
     std::uint32_t met = c->lanes;
-    const BodyPieces pieces(tree, *c->at, c->margin + tolerance_distance);
-    if (!pieces.add(c->node, swept, most, met, reach, batch)) continue;
-    if (batch.objects.size() == objects) {
+    const double margin = c->margin + tolerance_distance_;
+    if (!addPieces(*still.tree, c->node, *c->at, margin, parts, most, met, reach, drawing)) continue;
+    if (drawing.pieces.size() == before) {
       c->lanes = 0;
       continue;
     }
     lanes |= met;
     drawn.push_back(c);
-    ++batch.num_groups;
+    ++drawing.num_groups;
   }
-  if (batch.objects.size() == first_object) return;
-  batch.windows.push_back(windowOf(all, reach));
-  for (int lane = 0; lane < kParts; ++lane) {
-    if (lanes >> lane & 1) batch.swept.push_back({addVolume(link[lane], batch), swept.window});
+  if (pairs.empty()) return;
+  setWindow(all, reach, drawing);
+  for (int k = 0; k < kParts; ++k) {
+    if (lanes >> k & 1) drawing.swept.push_back(drawing.addVolume(link[k].points[0], 6, link[k].radius));
   }
+  report_.executor = drawBy(culler_, drawing, may);
+  for (std::size_t group = 0; group < drawn.size(); ++group) {
+    if (!may[group]) drawn[group]->lanes = 0;
+  }
+  report_.work.pieces += drawing.pieces.size();
+  for (const CullCandidate* pair : pairs) count(pair, end);
+}
+
+/// Counts a pair, or the nodes of a large body.
+void Stage::count(const CullCandidate* pair, const CullCandidate* end) {
+  VisibilityStatistics& work = report_.work;
+  std::uint64_t free = 0, all = 0;
+  for (const CullCandidate* c = pair; c < end && c->pair == pair->pair; ++c, ++all) free += c->lanes == 0;
+  ++work.pairs;
+  (free == all ? work.culled : work.nodes) += free == all ? 1 : free;
 }
 
 /// Passes progress on. A second solve begins at 0 again; what is proven stays proven. Who has said no is asked no more.
@@ -131,61 +162,11 @@ struct Progress {
   }
 };
 
-/// Counts pairs, and nodes of large bodies.
-void count(const engine::Problem& problem, const std::vector<CullCandidate*>& looked_at, VisibilityStatistics& work) {
-  std::size_t end = 0;
-  for (std::size_t begin = 0; begin < looked_at.size(); begin = end) {
-    const CullCandidate& first = *looked_at[begin];
-    std::uint64_t free = 0;
-    for (end = begin; end < looked_at.size() && looked_at[end]->pair == first.pair; ++end)
-      free += looked_at[end]->lanes == 0;
-    const std::uint64_t culled = free == end - begin;
-    ++work.pairs;
-    work.culled += culled;
-    if (!culled) work.nodes += free;
-    if (problem.bodies[first.still].mover < 0) continue;
-    const bool link = isLink(problem, first.still);
-    ++(link ? work.link_pairs : work.moving_pairs);
-    (link ? work.link_culled : work.moving_culled) += culled;
-  }
-}
-
 }  // namespace
 
-/// Single lanes of a candidate that stays are left as they are: the solver would find the same, by other roundings.
-void Stage::clear(void* context, const engine::Problem& problem, const SweptLink* links, CullCandidate* candidates,
-                  std::int32_t n) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point begin = Clock::now();
-  thread_local Drawing drawing;
-  Stage& stage = *static_cast<Stage*>(context);
-  VisibilityStatistics& work = stage.report_.work;
-  drawing.batch.clear();
-  drawing.batch.resolution = stage.culler_.options().resolution;
-  drawing.looked_at.clear();
-  drawing.drawn.clear();
-  CullCandidate* const all_end = candidates + n;
-  for (CullCandidate *from = candidates, *to = from; from < all_end; from = to) {
-    while (to < all_end && to->swept == from->swept) ++to;
-    drawing.addWindow(problem, links + kParts * from->swept, from, static_cast<std::int32_t>(to - from),
-                      stage.tolerance_distance_);
-  }
-  if (!drawing.looked_at.empty()) {
-    stage.report_.executor = runBy(stage.culler_, drawing.batch, drawing.may);
-    for (std::size_t group = 0; group < drawing.drawn.size(); ++group) {
-      if (!drawing.may[group]) drawing.drawn[group]->lanes = 0;
-    }
-    count(problem, drawing.looked_at, work);
-    work.pieces += drawing.batch.objects.size();
-  }
-  work.us += std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
-}
-
-void solve(const VisibilityCuller& culler, const SolveFunction& solver, const engine::Problem& problem,
-           const engine::Query& query, engine::Answer& answer, Report& report) {
-  const bool scene = query.check_scene && problem.num_obstacles > 0,
-             moving = query.check_self && problem.num_link_pairs > 0;
-  if (!(scene || moving) || query.work_budget) return solver(query, answer);
+void solve(const VisibilityCuller& culler, const SolveFunction& solver, const engine::Query& query,
+           engine::Answer& answer, Report& report) {
+  if (query.work_budget) return solver(query, answer);
   Progress progress{query.progress, query.progress_context};
   engine::Query asked = query;
   if (query.progress) {
@@ -193,8 +174,11 @@ void solve(const VisibilityCuller& culler, const SolveFunction& solver, const en
     asked.progress_context = &progress;
   }
   Stage stage(culler, query.tolerance_distance, report);
+  engine::Advisor advisor;
+  advisor.self = &stage;
+  advisor.clear = &Stage::clear;
   engine::Query advised = asked;
-  advised.ask(stage.advisor());
+  advised.ask(advisor);
   solver(advised, answer);
   report.fallback = culler.fallbackReason();
   const bool plainly_free = answer.isFree() && answer.num_ignored == 0;

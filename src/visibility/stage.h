@@ -8,9 +8,9 @@
 #include <string>
 
 #include "fcl_artic/statistics.h"
+#include "fcl_artic/visibility.h"
 #include "model/answer.h"
 #include "model/query.h"
-#include "visibility/batch.h"
 
 namespace fcl_artic {
 namespace visibility {
@@ -22,30 +22,6 @@ struct Report {
   std::string fallback;
 };
 
-class Stage {
- public:
-  /// @param tolerance_distance  of the query, m: what is nearer stays, since the solver alone may take it for a
-  /// contact.
-  Stage(const VisibilityCuller& culler, double tolerance_distance, Report& report)
-      : culler_(culler), tolerance_distance_(tolerance_distance), report_(report) {}
-
-  /// The solver's advisor that asks this stage.
-  engine::Advisor advisor() {
-    engine::Advisor advisor;
-    advisor.self = this;
-    advisor.clear = &Stage::clear;
-    return advisor;
-  }
-
- private:
-  static void clear(void* stage, const engine::Problem& problem, const engine::SweptLink* links,
-                    engine::CullCandidate* candidates, std::int32_t n);
-
-  const VisibilityCuller& culler_;
-  const double tolerance_distance_;
-  Report& report_;
-};
-
 /// One of the library's solvers, with its problem: answers a query, and asks the query's advisors.
 using SolveFunction = std::function<void(const engine::Query& query, engine::Answer& answer)>;
 
@@ -53,8 +29,8 @@ using SolveFunction = std::function<void(const engine::Query& query, engine::Ans
 /// If the stage has taken something out, only an answer that is free without ignored pairs stands. Any other is found
 /// again without it. A query with a work budget is solved without it from the start, as a budget reaches farther with
 /// it.
-void solve(const VisibilityCuller& culler, const SolveFunction& solver, const engine::Problem& problem,
-           const engine::Query& query, engine::Answer& answer, Report& report);
+void solve(const VisibilityCuller& culler, const SolveFunction& solver, const engine::Query& query,
+           engine::Answer& answer, Report& report);
 
 }  // namespace visibility
 }  // namespace fcl_artic

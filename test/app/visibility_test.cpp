@@ -43,15 +43,6 @@ TEST_F(VisibilityProgram, JsonTellsWhetherItWasUsedAndByWhom) {
   EXPECT_TRUE(Json::parse(far.out).at("visibility").at("executor").is_null());
 }
 
-TEST_F(VisibilityProgram, ModesThatAreGoneAreErrorsThatSayWhatToUse) {
-  for (const std::string mode : {"automatic", "at-once"}) {
-    const Outcome run = this->run("check " + armAndBall() + " --from 0,0 --to 1,0 --visibility " + mode);
-    EXPECT_EQ(run.status, 2) << run.out;
-    EXPECT_NE(run.err.find("the mode " + mode + " is gone: with on and off answers are the same"), std::string::npos)
-        << run.err;
-  }
-}
-
 TEST_F(VisibilityProgram, TextHasALine) {
   const Outcome run = this->run("check --visibility on " + armAndBall() + " --from 0,0 --to 90deg,0");
   EXPECT_NE(run.out.find("stage 2   executor cpu: 1 pair seen"), std::string::npos) << run.out;

@@ -55,8 +55,8 @@ TEST(RedonVisibility, VolumesHoldTheLink) {
     manager.bind("link3", &link_object);
     manager.registerObject(&obstacle);
     manager.setup();
-    visibility::Batch batch;
-    manager.setVisibility(test::recordTo(batch));
+    visibility::Drawing drawing;
+    manager.setVisibility(test::recordTo(drawing));
     for (const MotionEnclosure enclosure :
          {MotionEnclosure::intervalChain, MotionEnclosure::meanValue, MotionEnclosure::taylor}) {
       CertifiedRequest request;
@@ -64,14 +64,14 @@ TEST(RedonVisibility, VolumesHoldTheLink) {
       request.redon.enclosure = enclosure;
       request.visibility = VisibilityMode::on;
       CertifiedResult result;
-      batch.clear();
+      drawing.clear();
       manager.continuousCollide(motion, request, result);
-      if (result.statistics.redon.pairs_by_standard || batch.swept.size() != 8) continue;
+      if (result.statistics.redon.pairs_by_standard || drawing.swept.size() != 8) continue;
       ++telling;
       for (int part = 0; part < 8; ++part) {
         for (int k = 0; k < 40; ++k) {
           const Vector3d n = Vector3d(normal(random), normal(random), normal(random)).normalized();
-          const double held = test::support(batch, batch.swept[static_cast<std::size_t>(part)].volume, n);
+          const double held = test::support(drawing, drawing.swept[static_cast<std::size_t>(part)], n);
           for (int i = 0; i <= 16; ++i) {
             const Eigen::Isometry3d M = poseAt(motion, (part + i / 16.0) / 8);
             for (const Vector3d& x : needle) {

@@ -326,8 +326,7 @@ TEST(QueryText, WrongValuesAreRefusedByTheirPlace) {
       {"/motion/pieces", Json::array(), "motion.pieces are 0, without times"},
       {"/motion/pieces/0/coefficients/0/0", "nan", "not finite"},
       {"/request/mode", "last", "request.mode is 'last', which is none of first, any, first_of_every_pair"},
-      {"/request/visibility", "at_once",
-       "which is none of off, on; that mode is gone: with 'on' and 'off' answers are the same"},
+      {"/request/visibility", "at_once", "request.visibility is 'at_once', which is none of off, on"},
       {"/request/work_budget", -1, "request.work_budget is no whole number"},
       {"/request/redon/refinement_level", 0.5, "request.redon.refinement_level is no whole number"},
   };

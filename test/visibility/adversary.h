@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "pairs/random.h"
-#include "visibility/batch.h"
+#include "visibility/executor.h"
 
 namespace fcl_artic {
 namespace test {
@@ -27,11 +27,12 @@ class Adversary {
  public:
   Adversary(std::uint64_t seed, std::uint64_t i) : random_(seed * 0x2545f4914f6cdd1du + i) {}
 
-  /// Adds a window with one swept volume and one object that share a point; or, with `gap` > 0, a tangent pair that is
-  /// that many pixels apart.
-  void add(AdversaryKind kind, double gap, visibility::Batch& batch) {
+  /// A swept volume and a piece that share a point; or, with `gap` > 0, a tangent pair that is that many pixels apart.
+  /// @param[out] drawing  its resolution counts.
+  void draw(AdversaryKind kind, double gap, visibility::Drawing& drawing) {
+    drawing.clear();
     if (gap > 0) kind = AdversaryKind::tangent;
-    const double pixel = 1.0 / batch.resolution;  // of a window of side 1
+    const double pixel = 1.0 / drawing.resolution;  // of a window of side 1
     const double object_size = random_.logUniform(1e-3 * pixel, 20), swept_size = random_.logUniform(0.01 * pixel, 0.9);
     const Vector3d e = someDirection();
     std::vector<Vector3d> object = triangle(e, across(e), object_size), swept;
@@ -70,19 +71,14 @@ class Adversary {
     }
     for (Vector3d& corner : object) corner += on_swept - on_object;
     const bool cut = random_.chance(0.2) && gap == 0;
-    const auto window = static_cast<std::int32_t>(batch.windows.size());
-    batch.windows.push_back(windowAround(swept, radius, cut ? &on_swept : nullptr));
-    batch.swept.push_back({addVolume(swept, radius, batch), window});
-    batch.objects.push_back({addVolume(object, 0, batch), window, batch.num_groups++});
+    setWindow(swept, radius, cut ? &on_swept : nullptr, drawing);
+    drawing.swept.push_back(addVolume(swept, radius, drawing));
+    drawing.pieces.push_back({addVolume(object, 0, drawing), drawing.num_groups++});
   }
 
-  static visibility::Volume addVolume(const std::vector<Vector3d>& points, double radius, visibility::Batch& batch) {
-    visibility::Volume volume;
-    volume.first = static_cast<std::int32_t>(batch.points.size() / 3);
-    volume.count = static_cast<std::int32_t>(points.size());
-    volume.radius = radius;
-    for (const Vector3d& point : points) batch.points.insert(batch.points.end(), point.data(), point.data() + 3);
-    return volume;
+  static visibility::Volume addVolume(const std::vector<Vector3d>& points, double radius,
+                                      visibility::Drawing& drawing) {
+    return drawing.addVolume(points[0].data(), static_cast<std::int32_t>(points.size()), radius);
   }
 
  private:
@@ -125,8 +121,8 @@ class Adversary {
   }
   /// The box of what is swept, made larger by something, off the grid; or cut near the touching point.
   /// @param cut_near  this point; null: it is not cut.
-  visibility::Window windowAround(const std::vector<Vector3d>& swept, double radius, const Vector3d* cut_near) {
-    visibility::Window window;
+  void setWindow(const std::vector<Vector3d>& swept, double radius, const Vector3d* cut_near,
+                 visibility::Drawing& drawing) {
     for (int k = 0; k < 3; ++k) {
       double lo = swept[0][k], hi = lo;
       for (const Vector3d& x : swept) {
@@ -140,29 +136,25 @@ class Adversary {
         hi = std::min(hi, (*cut_near)[k] + random_.logUniform(1e-4, 1));
       }
       const double part = random_.unit(), room = random_.chance(0.3) ? 1e-3 : std::max(1 - (hi - lo), 1e-6);
-      window.lo[k] = lo - room * part - 1e-9;
-      window.hi[k] = hi + room * (1 - part) + 1e-9;
+      drawing.lo[k] = lo - room * part - 1e-9;
+      drawing.hi[k] = hi + room * (1 - part) + 1e-9;
     }
-    return window;
   }
 
   pairs::Random random_;
 };
 
 /// Culls among pairs [begin, end) of this seed: wrong ones, if they touch. Pair i is of kind i mod count.
-/// @param batch  its resolution and growth count.
-inline std::uint64_t countCulls(visibility::Executor& executor, visibility::Batch batch, std::uint64_t seed,
+/// @param drawing  its resolution and growth count.
+inline std::uint64_t countCulls(visibility::Executor& executor, visibility::Drawing drawing, std::uint64_t seed,
                                 std::uint64_t begin, std::uint64_t end, double gap = 0) {
-  constexpr std::uint64_t kAtOnce = 256, kKinds = static_cast<std::uint64_t>(AdversaryKind::count);
+  constexpr std::uint64_t kKinds = static_cast<std::uint64_t>(AdversaryKind::count);
   std::uint64_t culled = 0;
   std::vector<std::uint8_t> may;
-  for (std::uint64_t i = begin; i < end; i += kAtOnce) {
-    batch.clear();
-    for (std::uint64_t j = i; j < std::min(end, i + kAtOnce); ++j) {
-      Adversary(seed, j).add(static_cast<AdversaryKind>(j % kKinds), gap, batch);
-    }
-    executor.run(batch, may);
-    for (const std::uint8_t group : may) culled += !group;
+  for (std::uint64_t i = begin; i < end; ++i) {
+    Adversary(seed, i).draw(static_cast<AdversaryKind>(i % kKinds), gap, drawing);
+    executor.draw(drawing, may);
+    culled += !may.at(0);
   }
   return culled;
 }

@@ -10,33 +10,33 @@
 #include <vector>
 
 #include "fcl_artic/manager.h"
-#include "visibility/cpu_executor.h"
+#include "visibility/executor.h"
 
 namespace fcl_artic {
 namespace test {
 
 /// The executor cpu, but that `before` and `after` may change the task and the answer.
 struct Changed : visibility::Executor {
-  void run(const visibility::Batch& batch, std::vector<std::uint8_t>& may) override {
-    visibility::Batch changed = batch;
+  void findThatMayOverlap(const visibility::Drawing& drawing, std::vector<std::uint8_t>& may) override {
+    visibility::Drawing changed = drawing;
     if (before) before(changed);
-    cpu.run(changed, may);
+    cpu->draw(changed, may);
     if (after) after(may);
   }
-  std::function<void(visibility::Batch& batch)> before;
+  std::function<void(visibility::Drawing& drawing)> before;
   std::function<void(std::vector<std::uint8_t>& may)> after;
-  visibility::CpuExecutor cpu;
+  std::unique_ptr<visibility::Executor> cpu = visibility::makeCpuExecutor();
 };
 /// A culler with that executor, whose self-test is done: nothing of it reaches the functions.
 inline std::shared_ptr<const VisibilityCuller> changedBy(
-    std::function<void(visibility::Batch& batch)> before,
+    std::function<void(visibility::Drawing& drawing)> before,
     std::function<void(std::vector<std::uint8_t>& may)> after = nullptr) {
   auto tested = std::make_shared<bool>(false);
   const auto culler = std::make_shared<VisibilityCuller>(VisibilityOptions(), "changed", [=] {
     auto executor = std::make_unique<Changed>();
     if (before)
-      executor->before = [=](visibility::Batch& batch) {
-        if (*tested) before(batch);
+      executor->before = [=](visibility::Drawing& drawing) {
+        if (*tested) before(drawing);
       };
     if (after)
       executor->after = [=](std::vector<std::uint8_t>& may) {
@@ -48,15 +48,15 @@ inline std::shared_ptr<const VisibilityCuller> changedBy(
   *tested = true;
   return culler;
 }
-inline std::shared_ptr<const VisibilityCuller> recordTo(visibility::Batch& last) {
-  return changedBy([&last](visibility::Batch& batch) { last = batch; });
+inline std::shared_ptr<const VisibilityCuller> recordTo(visibility::Drawing& last) {
+  return changedBy([&last](visibility::Drawing& drawing) { last = drawing; });
 }
 
 /// How far a volume reaches along n.
-inline double support(const visibility::Batch& batch, const visibility::Volume& volume, const Eigen::Vector3d& n) {
+inline double support(const visibility::Drawing& drawing, const visibility::Volume& volume, const Eigen::Vector3d& n) {
   double most = -HUGE_VAL;
   for (int i = 0; i < volume.count; ++i) {
-    most = std::max(most, n.dot(Eigen::Vector3d::Map(batch.points.data() + 3 * (volume.first + i))));
+    most = std::max(most, n.dot(Eigen::Vector3d::Map(drawing.points.data() + 3 * (volume.first + i))));
   }
   return most + volume.radius * n.norm();
 }

@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 using visibility::Bounds;
 
 /// The tree leaves no piece out: what it comes to is what a look at each piece finds.
-TEST(BodyPieces, AreThoseThatMeetTheParts) {
+TEST(Pieces, AreThoseThatMeetTheParts) {
   pairs::Random random(1);
   const auto inCube = [&] { return Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
   std::vector<Vector3d> vertices;
@@ -42,9 +42,8 @@ TEST(BodyPieces, AreThoseThatMeetTheParts) {
     Vector3d::Map(placement.t) = at;
     placement.length = at.norm() + 1e-9;
     placement.ulps = 8;
-    visibility::SweptParts swept;
-    swept.window = 0;
-    for (Bounds& part : swept.parts) {
+    Bounds parts[8];
+    for (Bounds& part : parts) {
       const Vector3d middle = at + random.direction();
       const Vector3d segment[2] = {middle, middle + 0.5 * random.direction()};
       part = visibility::boundsOf(segment[0].data(), 2, trial % 4 ? 0.05 : 0.4);
@@ -58,21 +57,24 @@ TEST(BodyPieces, AreThoseThatMeetTheParts) {
       for (std::size_t k = 0; k < 3; ++k) corners[k] = turn * vertices[3 * i + k] + at;
       const Bounds bounds = visibility::boundsOf(corners[0].data(), 3, margin);
       std::uint32_t lanes = 0;
-      for (int lane = 0; lane < 8; ++lane)
-        lanes |= (asked >> lane & 1) && swept.parts[lane].meets(bounds) ? 1u << lane : 0;
+      for (int lane = 0; lane < 8; ++lane) {
+        bool apart = !(asked >> lane & 1);
+        for (int d = 0; d < Bounds::kDirections; ++d)
+          apart = apart || parts[lane].lo[d] > bounds.hi[d] || bounds.lo[d] > parts[lane].hi[d];
+        if (!apart) lanes |= 1u << lane;
+      }
       met |= lanes;
       expected += lanes != 0;
     }
-    visibility::Batch batch;
-    Bounds reach = Bounds::none();
+    visibility::Drawing drawing;
+    Bounds reach;
     std::uint32_t lanes = asked;
     constexpr std::size_t kMost = 40;
-    const bool added =
-        visibility::BodyPieces(tree->view(), placement, margin).add(0, swept, kMost, lanes, reach, batch);
+    const bool added = visibility::addPieces(tree->view(), 0, placement, margin, parts, kMost, lanes, reach, drawing);
     EXPECT_TRUE(added ? expected <= kMost : expected >= kMost) << trial;
-    EXPECT_EQ(batch.objects.size(), added ? expected : 0) << trial;
+    EXPECT_EQ(drawing.pieces.size(), added ? expected : 0) << trial;
     EXPECT_EQ(lanes, added ? met : asked) << trial;
-    found += batch.objects.size();
+    found += drawing.pieces.size();
     too_many += !added;
   }
   EXPECT_GT(found, 1000u);
@@ -121,8 +123,8 @@ class SolveTwice : public testing::Test {
     report_ = visibility::Report();
     answer_ = engine::Answer();
     visibility::solve(
-        culler_, [this](const engine::Query& asked, engine::Answer& out) { answer(asked, out); }, problem_, query_,
-        answer_, report_);
+        culler_, [this](const engine::Query& asked, engine::Answer& out) { answer(asked, out); }, query_, answer_,
+        report_);
     return advised_;
   }
 

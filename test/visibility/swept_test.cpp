@@ -21,7 +21,7 @@ namespace {
 
 using namespace fcl_artic;
 using Eigen::Vector3d;
-using visibility::Batch;
+using visibility::Drawing;
 
 class Swept : public testing::Test {
  protected:
@@ -31,7 +31,7 @@ class Swept : public testing::Test {
     std::normal_distribution<double> normal;
     return Vector3d(normal(random_), normal(random_), normal(random_)).normalized();
   }
-  /// Asks once; what the executor saw is in batch_.
+  /// Asks once; what the executor saw is in drawing_.
   void ask(const JointMotion& motion, const std::shared_ptr<fcl::CollisionGeometryd>& obstacle,
            const Eigen::Isometry3d& at, double margin) {
     fcl::CollisionObjectd link(capsule_), object(obstacle, at);
@@ -39,7 +39,7 @@ class Swept : public testing::Test {
     manager.bind("link3", &link);
     manager.registerObject(&object);
     manager.setup();
-    manager.setVisibility(test::recordTo(batch_));
+    manager.setVisibility(test::recordTo(drawing_));
     CertifiedRequest request;
     request.visibility = VisibilityMode::on;
     request.margin = margin;
@@ -49,7 +49,7 @@ class Swept : public testing::Test {
   std::shared_ptr<fcl::Capsuled> capsule_;
   std::shared_ptr<const KinematicTree> tree_;
   std::mt19937_64 random_{1};
-  Batch batch_;
+  Drawing drawing_;
   CertifiedResult result_;
 };
 
@@ -59,13 +59,13 @@ TEST_F(Swept, VolumesHoldTheLink) {
     const Eigen::VectorXd q0 = Eigen::VectorXd::Random(4) * 2, dq = Eigen::VectorXd::Random(4) * (trial % 4 ? 0.5 : 2);
     const JointMotion motion = JointMotion::linear(*tree_, q0, q0 + dq);
     ask(motion, std::make_shared<fcl::Boxd>(20, 20, 20), Eigen::Isometry3d::Identity(), 0);  // all of it in a solid
-    ASSERT_EQ(batch_.swept.size(), 8u);
+    ASSERT_EQ(drawing_.swept.size(), 8u);
     EXPECT_EQ(result_.statistics.visibility.culled, 0u);
     std::vector<Eigen::Isometry3d> M_0;
     for (int lane = 0; lane < 8; ++lane) {
       for (int k = 0; k < 40; ++k) {
         const Vector3d n = direction();
-        const double held = test::support(batch_, batch_.swept[static_cast<std::size_t>(lane)].volume, n);
+        const double held = test::support(drawing_, drawing_.swept[static_cast<std::size_t>(lane)], n);
         for (int i = 0; i <= 16; ++i) {
           tree_->forwardKinematics(motion.configuration((lane + i / 16.0) / 8), M_0);
           const Eigen::Isometry3d& M = M_0[static_cast<std::size_t>(tree_->linkId("link3"))];
@@ -120,11 +120,11 @@ TEST_F(Swept, PiecesHoldTheObstacle) {
     at.rotate(Eigen::AngleAxisd(0.7, direction()));
     at.translation() << 0.4, 1.2, 1.2;  // about the link
     ask(motion, c.shape, at, margin);
-    ASSERT_EQ(batch_.objects.size(), 1u) << c.shape->getNodeType();
+    ASSERT_EQ(drawing_.pieces.size(), 1u) << c.shape->getNodeType();
     for (int k = 0; k < 2000; ++k) {
       const Vector3d n = direction();
       const double reached = n.dot(at * c.point(at.linear().transpose() * n)) + grown;
-      const double held = test::support(batch_, batch_.objects[0].volume, n);
+      const double held = test::support(drawing_, drawing_.pieces[0].volume, n);
       ASSERT_LE(reached, held + 1e-13) << c.shape->getNodeType();
       ASSERT_LE(held, reached + c.room) << c.shape->getNodeType();
     }
