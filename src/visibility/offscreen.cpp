@@ -41,10 +41,11 @@ std::runtime_error noVersion(const char* library, int major, int minor) {
 
 #define FCL_ARTIC_OSMESA(X) \
   X(CreateContextAttribs) X(DestroyContext) X(MakeCurrent) X(GetCurrentContext) X(GetProcAddress)
-#define FCL_ARTIC_EGL(X)                                                                                \
-  X(GetProcAddress)                                                                                     \
-  X(QueryString) X(Initialize) X(BindAPI) X(QueryAPI) X(CreateContext) X(DestroyContext) X(MakeCurrent) \
-      X(GetCurrentContext) X(GetCurrentDisplay) X(GetCurrentSurface) X(ReleaseThread)
+#define FCL_ARTIC_EGL(X)                                                                                      \
+  X(GetProcAddress)                                                                                           \
+  X(QueryString)                                                                                              \
+  X(Initialize) X(BindAPI) X(QueryAPI) X(CreateContext) X(DestroyContext) X(MakeCurrent) X(GetCurrentContext) \
+      X(GetCurrentDisplay) X(GetCurrentSurface) X(ReleaseThread)
 
 struct Osmesa {
 #define FCL_ARTIC_DECLARE(name) decltype(&::OSMesa##name) name = nullptr;

@@ -96,20 +96,23 @@ void Stage::look(const engine::Problem& problem, const SweptLink* link, CullCand
   drawing.resolution = culler_.options().resolution;
   pairs.clear();
   drawn.clear();
-  Bounds parts[kParts], all, reach;
+  SweptParts swept;
+  Bounds all, reach;
   std::uint32_t lanes = 0;
   for (const CullCandidate* c = begin; c < end; ++c) lanes |= c->lanes;
   for (int k = 0; k < kParts; ++k) {
     if (!(lanes >> k & 1)) continue;
-    parts[k] = boundsOf(link[k].points[0], 6, link[k].radius);
-    all.join(parts[k]);
+    swept.parts[k] = boundsOf(link[k].points[0], 6, link[k].radius);
+    all.join(swept.parts[k]);
   }
+  const double size = std::max({all.hi[0] - all.lo[0], all.hi[1] - all.lo[1], all.hi[2] - all.lo[2]});
+  swept.least = size / (4 * drawing.resolution);  // a quarter of a pixel, before the window is known
   lanes = 0;
   std::size_t most = 0;
   for (CullCandidate* c = begin; c < end; ++c) {
     const engine::Body& still = problem.bodies[c->still];
     const bool is_link = still.mover >= 0 && still.mover < problem.num_scene_movers;
-    if (is_link && !comesInto(still.tree->nodes[0], parts, c->lanes)) continue;
+    if (is_link && !comesInto(still.tree->nodes[0], swept.parts, c->lanes)) continue;
     if (pairs.empty() || c->pair != pairs.back()->pair) {
       pairs.push_back(c);
       most = drawing.pieces.size() + kMostPiecesOfPair;
@@ -117,7 +120,7 @@ void Stage::look(const engine::Problem& problem, const SweptLink* link, CullCand
     const std::size_t before = drawing.pieces.size();
     std::uint32_t met = c->lanes;
     const double margin = c->margin + tolerance_distance_;
-    if (!addPieces(*still.tree, c->node, *c->at, margin, parts, most, met, reach, drawing)) continue;
+    if (!addPieces(*still.tree, c->node, *c->at, margin, swept, most, met, reach, drawing)) continue;
     if (drawing.pieces.size() == before) {
       c->lanes = 0;
       continue;

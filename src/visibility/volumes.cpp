@@ -28,16 +28,15 @@ struct PlacedTree {
     const double *R = at.R, *t = at.t;
     for (int k = 0; k < 3; ++k) x[k] = R[3 * k] * p[0] + R[3 * k + 1] * p[1] + R[3 * k + 2] * p[2] + t[k];
   }
-  /// Bounds of the ball around the node's box.
-  Bounds boundsOf(const engine::Node& node) const {
+  Volume addBall(const engine::Node& node, Drawing& drawing) const {
     double center[3], x[3];
     for (int k = 0; k < 3; ++k) center[k] = 0.5 * (static_cast<double>(node.lo[k]) + static_cast<double>(node.hi[k]));
     place(center, x);
-    return visibility::boundsOf(x, 1, static_cast<double>(node.radius) + pad);
+    return drawing.addVolume(x, 1, static_cast<double>(node.radius) + pad);
   }
   /// Adds the piece as the hull of points: itself, or, where it is curved, a polyhedron around it. An unbounded
   /// piece has no points.
-  Volume addVolume(const engine::Piece& piece, Drawing& drawing) const {
+  Volume addPiece(const engine::Piece& piece, Drawing& drawing) const {
     Volume volume = {static_cast<std::int32_t>(drawing.points.size() / 3), 0, piece.radius + pad};
     baseline::coverCore(tree, piece, [&](double a, double b, double c) {
       const double p[3] = {piece.center[0] + a, piece.center[1] + b, piece.center[2] + c};
@@ -96,7 +95,7 @@ Bounds boundsOf(const double* points, int count, double radius) {
 }
 
 bool addPieces(const engine::TreeView& tree, std::int32_t root, const engine::Placement& at, double margin,
-               const Bounds* parts, std::size_t most, std::uint32_t& lanes, Bounds& reach, Drawing& drawing) {
+               const SweptParts& swept, std::size_t most, std::uint32_t& lanes, Bounds& reach, Drawing& drawing) {
   if (!(tree.nodes[0].radius < engine::kUnbounded)) return false;
   // The placement's own error and a dozen roundings of numbers no larger than these.
   const double rounding = 0x1p-52 * (at.ulps + 64) * (2 * tree.extent + at.length + margin);
@@ -120,26 +119,24 @@ bool addPieces(const engine::TreeView& tree, std::int32_t root, const engine::Pl
   while (open) {
     const Open top = stack[--open];
     const engine::Node& node = tree.nodes[top.node];
-    if (!node.isLeaf()) {
-      const std::uint32_t met = placed.boundsOf(node).meet(parts, top.lanes);
-      if (!met) continue;
-      if (open + 2 > kMostOpen) return addNothing();
-      stack[open++] = {node.right(), met};
-      stack[open++] = {node.left(), met};
-      continue;
-    }
-    if (drawing.pieces.size() >= most) return addNothing();
-    const Volume volume = placed.addVolume(tree.pieces[node.piece()], drawing);
+    const bool small = static_cast<double>(node.radius) < swept.least, draw = small || node.isLeaf();
+    if (draw && drawing.pieces.size() >= most) return addNothing();
+    const Volume volume =
+        small || !draw ? placed.addBall(node, drawing) : placed.addPiece(tree.pieces[node.piece()], drawing);
     const double* points = drawing.points.data() + 3 * static_cast<std::ptrdiff_t>(volume.first);
     const Bounds bounds = boundsOf(points, volume.count, volume.radius);
-    const std::uint32_t met = bounds.meet(parts, top.lanes);
-    if (met) {
+    const std::uint32_t met = bounds.meet(swept.parts, top.lanes);
+    if (met && draw) {
       touched |= met;
       reached.join(bounds);
       drawing.pieces.push_back({volume, drawing.num_groups});
-    } else {
-      drawing.points.resize(3 * static_cast<std::size_t>(volume.first));
+      continue;
     }
+    drawing.points.resize(3 * static_cast<std::size_t>(volume.first));
+    if (!met) continue;
+    if (open + 2 > kMostOpen) return addNothing();
+    stack[open++] = {node.right(), met};
+    stack[open++] = {node.left(), met};
   }
   lanes &= touched;
   reach = reached;

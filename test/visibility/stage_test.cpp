@@ -42,8 +42,8 @@ TEST(Pieces, AreThoseThatMeetTheParts) {
     Vector3d::Map(placement.t) = at;
     placement.length = at.norm() + 1e-9;
     placement.ulps = 8;
-    Bounds parts[8];
-    for (Bounds& part : parts) {
+    visibility::SweptParts swept;
+    for (Bounds& part : swept.parts) {
       const Vector3d middle = at + random.direction();
       const Vector3d segment[2] = {middle, middle + 0.5 * random.direction()};
       part = visibility::boundsOf(segment[0].data(), 2, trial % 4 ? 0.05 : 0.4);
@@ -60,7 +60,7 @@ TEST(Pieces, AreThoseThatMeetTheParts) {
       for (int lane = 0; lane < 8; ++lane) {
         bool apart = !(asked >> lane & 1);
         for (int d = 0; d < Bounds::kDirections; ++d)
-          apart = apart || parts[lane].lo[d] > bounds.hi[d] || bounds.lo[d] > parts[lane].hi[d];
+          apart = apart || swept.parts[lane].lo[d] > bounds.hi[d] || bounds.lo[d] > swept.parts[lane].hi[d];
         if (!apart) lanes |= 1u << lane;
       }
       met |= lanes;
@@ -70,7 +70,7 @@ TEST(Pieces, AreThoseThatMeetTheParts) {
     Bounds reach;
     std::uint32_t lanes = asked;
     constexpr std::size_t kMost = 40;
-    const bool added = visibility::addPieces(tree->view(), 0, placement, margin, parts, kMost, lanes, reach, drawing);
+    const bool added = visibility::addPieces(tree->view(), 0, placement, margin, swept, kMost, lanes, reach, drawing);
     EXPECT_TRUE(added ? expected <= kMost : expected >= kMost) << trial;
     EXPECT_EQ(drawing.pieces.size(), added ? expected : 0) << trial;
     EXPECT_EQ(lanes, added ? met : asked) << trial;
