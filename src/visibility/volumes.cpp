@@ -13,17 +13,50 @@ namespace fcl_artic {
 namespace visibility {
 namespace {
 
-/// Coordinates x, y and z of the directions of Bounds.
+constexpr double kSqrt3 = 1.7320508075688773;
+/// Coordinates x, y and z of the directions of Bounds, and their lengths.
 constexpr double kAlong[3][Bounds::kDirections] = {{1, 0, 0, 1, 1, 0, 0, 1, -1, 1, 1, 1, 1},
                                                    {0, 1, 0, 1, -1, 1, 1, 0, 0, 1, 1, -1, -1},
                                                    {0, 0, 1, 0, 0, 1, -1, 1, 1, 1, -1, 1, -1}};
+
+constexpr double kLengths[Bounds::kDirections] = {1,       1,       1,      M_SQRT2, M_SQRT2, M_SQRT2, M_SQRT2,
+                                                  M_SQRT2, M_SQRT2, kSqrt3, kSqrt3,  kSqrt3,  kSqrt3};
 
 /// A body's tree where it stands.
 struct PlacedTree {
   const engine::TreeView& tree;
   const engine::Placement& at;
-  double pad;  ///< bound on the rounding of a placed point, plus the margin
+  double pad;                           ///< bound on the rounding of a placed point, plus the margin
+  double axes[4][Bounds::kDirections];  ///< of the tree's frame, and its origin, along the directions
 
+  PlacedTree(const engine::TreeView& of, const engine::Placement& where, double margin)
+      : tree(of),
+        at(where),
+        // The placement's own error and a dozen roundings of numbers no larger than these.
+        pad(margin + 0x1p-52 * (at.ulps + 64) * (2 * of.extent + at.length + margin)) {
+    for (int d = 0; d < Bounds::kDirections; ++d) {
+      const double x = kAlong[0][d], y = kAlong[1][d], z = kAlong[2][d], *R = at.R, *t = at.t;
+      for (int k = 0; k < 3; ++k) axes[k][d] = x * R[k] + y * R[3 + k] + z * R[6 + k];
+      axes[3][d] = x * t[0] + y * t[1] + z * t[2];
+    }
+  }
+
+  /// Bounds of the node's box: where its middle is, and how far its half sides reach. A direction is no longer than
+  /// sqrt(3), and roundings are some twenty: within its length times pad.
+  Bounds boundsOf(const engine::Node& node) const {
+    Bounds b;
+    for (int d = 0; d < Bounds::kDirections; ++d) {
+      double middle = axes[3][d], reach = kLengths[d] * pad;
+      for (int k = 0; k < 3; ++k) {
+        const auto lo = static_cast<double>(node.lo[k]), hi = static_cast<double>(node.hi[k]);
+        middle += axes[k][d] * (0.5 * (hi + lo));
+        reach += std::abs(axes[k][d]) * (0.5 * (hi - lo));
+      }
+      b.lo[d] = middle - reach;
+      b.hi[d] = middle + reach;
+    }
+    return b;
+  }
   void place(const double* p, double* x) const {
     const double *R = at.R, *t = at.t;
     for (int k = 0; k < 3; ++k) x[k] = R[3 * k] * p[0] + R[3 * k + 1] * p[1] + R[3 * k + 2] * p[2] + t[k];
@@ -86,8 +119,7 @@ Bounds boundsOf(const double* points, int count, double radius) {
     size += std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]);  // not a number, where one of them isn't
   }
   for (int d = 0; d < Bounds::kDirections; ++d) {
-    const double length = d < 3 ? 1 : d < 9 ? M_SQRT2 : 1.7320508075688773;
-    const double grow = length * radius + 0x1p-48 * size;
+    const double grow = kLengths[d] * radius + 0x1p-48 * size;
     b.lo[d] -= grow;
     b.hi[d] += grow;
   }
@@ -97,9 +129,7 @@ Bounds boundsOf(const double* points, int count, double radius) {
 bool addPieces(const engine::TreeView& tree, std::int32_t root, const engine::Placement& at, double margin,
                const SweptParts& swept, std::size_t most, std::uint32_t& lanes, Bounds& reach, Drawing& drawing) {
   if (!(tree.nodes[0].radius < engine::kUnbounded)) return false;
-  // The placement's own error and a dozen roundings of numbers no larger than these.
-  const double rounding = 0x1p-52 * (at.ulps + 64) * (2 * tree.extent + at.length + margin);
-  const PlacedTree placed = {tree, at, margin + rounding};
+  const PlacedTree placed(tree, at, margin);
   const std::size_t num_pieces = drawing.pieces.size(), num_points = drawing.points.size();
   const auto addNothing = [&] {
     drawing.pieces.resize(num_pieces);
@@ -119,24 +149,27 @@ bool addPieces(const engine::TreeView& tree, std::int32_t root, const engine::Pl
   while (open) {
     const Open top = stack[--open];
     const engine::Node& node = tree.nodes[top.node];
-    const bool small = static_cast<double>(node.radius) < swept.least, draw = small || node.isLeaf();
-    if (draw && drawing.pieces.size() >= most) return addNothing();
-    const Volume volume =
-        small || !draw ? placed.addBall(node, drawing) : placed.addPiece(tree.pieces[node.piece()], drawing);
+    const bool small = static_cast<double>(node.radius) < swept.least;
+    if (!small && !node.isLeaf()) {
+      const std::uint32_t met = placed.boundsOf(node).meet(swept.parts, top.lanes);
+      if (!met) continue;
+      if (open + 2 > kMostOpen) return addNothing();
+      stack[open++] = {node.right(), met};
+      stack[open++] = {node.left(), met};
+      continue;
+    }
+    if (drawing.pieces.size() >= most) return addNothing();
+    const Volume volume = small ? placed.addBall(node, drawing) : placed.addPiece(tree.pieces[node.piece()], drawing);
     const double* points = drawing.points.data() + 3 * static_cast<std::ptrdiff_t>(volume.first);
     const Bounds bounds = boundsOf(points, volume.count, volume.radius);
     const std::uint32_t met = bounds.meet(swept.parts, top.lanes);
-    if (met && draw) {
+    if (met) {
       touched |= met;
       reached.join(bounds);
       drawing.pieces.push_back({volume, drawing.num_groups});
-      continue;
+    } else {
+      drawing.points.resize(3 * static_cast<std::size_t>(volume.first));
     }
-    drawing.points.resize(3 * static_cast<std::size_t>(volume.first));
-    if (!met) continue;
-    if (open + 2 > kMostOpen) return addNothing();
-    stack[open++] = {node.right(), met};
-    stack[open++] = {node.left(), met};
   }
   lanes &= touched;
   reach = reached;
