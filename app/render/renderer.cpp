@@ -9,7 +9,7 @@
 #include <unordered_map>
 
 #include "shaders.h"
-#include "visibility/gl_functions.h"
+#include "visibility/opengl.h"
 
 namespace fcl_artic::render {
 namespace {

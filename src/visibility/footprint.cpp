@@ -27,110 +27,106 @@ struct Projection {
   double half, depth_half;
   Footprint& f;
 
-  void addSide(double a, double b) const;
-  void addHull() const;
-  void addBounds(double a, double b) const;
-  void addSlopes() const;
-};
-
-/// Support of the volume, the pixel's square and the margin along (a, b).
-void Projection::addSide(double a, double b) const {
-  if (f.num_sides == Footprint::kMaxSides) return;  // a side less: a larger footprint
-  double c = a * x[0] + b * y[0];
-  for (int i = 1; i < count; ++i) c = std::max(c, a * x[i] + b * y[i]);
-  const double ra = a * radius[0], rb = b * radius[1];
-  c += half * (std::abs(a) + std::abs(b)) + std::sqrt(ra * ra + rb * rb);
-  c += kDouble * (sums[0] + sums[1] + radius[0] + radius[1] + 1);
-  f.sides[f.num_sides++] = {static_cast<float>(a), static_cast<float>(b), static_cast<float>(c), 0};
-}
-
-/// Adds the diagonals' sides, and those along the edges of the points' hull. (The sum of convex polygons has the sides
-/// of each; the corners of the round part stick out, up to the box and the diagonals.)
-void Projection::addHull() const {
-  for (const double a : {M_SQRT1_2, -M_SQRT1_2}) {
-    for (const double b : {M_SQRT1_2, -M_SQRT1_2}) {
-      if (count != 3) addSide(a, b);
-    }
+  /// Support of the volume, the pixel's square and the margin along (a, b).
+  void addSide(double a, double b) const {
+    if (f.num_sides == Footprint::kMaxSides) return;  // a side less: a larger footprint
+    double c = a * x[0] + b * y[0];
+    for (int i = 1; i < count; ++i) c = std::max(c, a * x[i] + b * y[i]);
+    const double ra = a * radius[0], rb = b * radius[1];
+    c += half * (std::abs(a) + std::abs(b)) + std::sqrt(ra * ra + rb * rb);
+    c += kDouble * (sums[0] + sums[1] + radius[0] + radius[1] + 1);
+    f.sides[f.num_sides++] = {static_cast<float>(a), static_cast<float>(b), static_cast<float>(c), 0};
   }
-  if (count > kFewPoints) return;
-  for (int i = 0; i < count; ++i) {
-    for (int j = 0; j < i; ++j) {
-      const double dx = x[i] - x[j], dy = y[i] - y[j], length = std::sqrt(dx * dx + dy * dy);
-      if (!(length > 1e-9)) continue;
-      const double a = dy / length, b = -dx / length, c = a * x[i] + b * y[i];
-      double before = 0, behind = 0;
-      for (int k = 0; k < count; ++k) {
-        before = std::min(before, a * x[k] + b * y[k] - c);
-        behind = std::max(behind, a * x[k] + b * y[k] - c);
+
+  /// Adds the diagonals' sides, and those along the edges of the points' hull. (The sum of convex polygons has the
+  /// sides of each; the corners of the round part stick out, up to the box and the diagonals.)
+  void addHull() const {
+    for (const double a : {M_SQRT1_2, -M_SQRT1_2}) {
+      for (const double b : {M_SQRT1_2, -M_SQRT1_2}) {
+        if (count != 3) addSide(a, b);
       }
-      if (behind < 1e-9) addSide(a, b);
-      if (before > -1e-9) addSide(-a, -b);
+    }
+    if (count > kFewPoints) return;
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < i; ++j) {
+        const double dx = x[i] - x[j], dy = y[i] - y[j], length = std::sqrt(dx * dx + dy * dy);
+        if (!(length > 1e-9)) continue;
+        const double a = dy / length, b = -dx / length, c = a * x[i] + b * y[i];
+        double before = 0, behind = 0;
+        for (int k = 0; k < count; ++k) {
+          before = std::min(before, a * x[k] + b * y[k] - c);
+          behind = std::max(behind, a * x[k] + b * y[k] - c);
+        }
+        if (behind < 1e-9) addSide(a, b);
+        if (before > -1e-9) addSide(-a, -b);
+      }
     }
   }
-}
 
-/// For any slopes: over the pixel's square, X = x + dx with |dx| <= 1/2, Z - a x - b y = (Z - a X - b Y) + a dx + b dy.
-void Projection::addBounds(double a, double b) const {
-  a = static_cast<float>(a);
-  b = static_cast<float>(b);
-  if (f.num_bounds == Footprint::kMaxBounds || !(std::abs(a) <= kSteepest && std::abs(b) <= kSteepest)) return;
-  double lower = z[0] - a * x[0] - b * y[0], upper = lower;
-  for (int i = 1; i < count; ++i) {
-    const double t = z[i] - a * x[i] - b * y[i];
-    lower = std::min(lower, t);
-    upper = std::max(upper, t);
-  }
-  const double ra = a * radius[0], rb = b * radius[1], rz = radius[2];
-  const double ball = std::sqrt(rz * rz + ra * ra + rb * rb), slope = std::abs(a) + std::abs(b);
-  const double rounding = kDouble * (sums[2] + std::abs(a) * sums[0] + std::abs(b) * sums[1] + ball + 1);
-  const double grow = ball + slope * depth_half + rounding, evaluation = kFloat * (slope * f.resolution + 1e-9);
-  lower -= grow;
-  upper += grow;
-  const float infinity = std::numeric_limits<float>::infinity();
-  f.bounds[f.num_bounds++] = {
-      static_cast<float>(a), static_cast<float>(b),
-      std::nextafter(static_cast<float>(lower - evaluation - kFloat * std::abs(lower)), -infinity),
-      std::nextafter(static_cast<float>(upper + evaluation + kFloat * std::abs(upper)), infinity)};
-}
-
-/// Adds the slopes that are worth trying: those of the plane through three far points and, for round volumes, those
-/// along the longest edge and tilted about it.
-void Projection::addSlopes() const {
-  addBounds(0, 0);
-  int p = 0, q = 0, r = -1;
-  double longest = 1e-6;
-  const int n = std::min(count, kFewPoints);
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < i; ++j) {
-      const double dx = x[i] - x[j], dy = y[i] - y[j], square = dx * dx + dy * dy;
-      if (!(square > longest)) continue;
-      longest = square;
-      p = j;
-      q = i;
+  /// For any slopes: over the pixel's square, X = x + dx with |dx| <= 1/2, Z - a x - b y = (Z - a X - b Y) + a dx + b
+  /// dy.
+  void addBounds(double a, double b) const {
+    a = static_cast<float>(a);
+    b = static_cast<float>(b);
+    if (f.num_bounds == Footprint::kMaxBounds || !(std::abs(a) <= kSteepest && std::abs(b) <= kSteepest)) return;
+    double lower = z[0] - a * x[0] - b * y[0], upper = lower;
+    for (int i = 1; i < count; ++i) {
+      const double t = z[i] - a * x[i] - b * y[i];
+      lower = std::min(lower, t);
+      upper = std::max(upper, t);
     }
+    const double ra = a * radius[0], rb = b * radius[1], rz = radius[2];
+    const double ball = std::sqrt(rz * rz + ra * ra + rb * rb), slope = std::abs(a) + std::abs(b);
+    const double rounding = kDouble * (sums[2] + std::abs(a) * sums[0] + std::abs(b) * sums[1] + ball + 1);
+    const double grow = ball + slope * depth_half + rounding, evaluation = kFloat * (slope * f.resolution + 1e-9);
+    lower -= grow;
+    upper += grow;
+    const float infinity = std::numeric_limits<float>::infinity();
+    f.bounds[f.num_bounds++] = {
+        static_cast<float>(a), static_cast<float>(b),
+        std::nextafter(static_cast<float>(lower - evaluation - kFloat * std::abs(lower)), -infinity),
+        std::nextafter(static_cast<float>(upper + evaluation + kFloat * std::abs(upper)), infinity)};
   }
-  if (p == q) return;
-  const double ux = x[q] - x[p], uy = y[q] - y[p], uz = z[q] - z[p];
-  double widest = 1e-9 * longest;
-  for (int i = 0; i < n; ++i) {
-    const double area = std::abs(ux * (y[i] - y[p]) - uy * (x[i] - x[p]));
-    if (!(area > widest)) continue;
-    widest = area;
-    r = i;
+
+  /// Adds the slopes that are worth trying: those of the plane through three far points and, for round volumes, those
+  /// along the longest edge and tilted about it.
+  void addSlopes() const {
+    addBounds(0, 0);
+    int p = 0, q = 0, r = -1;
+    double longest = 1e-6;
+    const int n = std::min(count, kFewPoints);
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < i; ++j) {
+        const double dx = x[i] - x[j], dy = y[i] - y[j], square = dx * dx + dy * dy;
+        if (!(square > longest)) continue;
+        longest = square;
+        p = j;
+        q = i;
+      }
+    }
+    if (p == q) return;
+    const double ux = x[q] - x[p], uy = y[q] - y[p], uz = z[q] - z[p];
+    double widest = 1e-9 * longest;
+    for (int i = 0; i < n; ++i) {
+      const double area = std::abs(ux * (y[i] - y[p]) - uy * (x[i] - x[p]));
+      if (!(area > widest)) continue;
+      widest = area;
+      r = i;
+    }
+    if (r >= 0) {
+      const double vx = x[r] - x[p], vy = y[r] - y[p], vz = z[r] - z[p], det = ux * vy - uy * vx;
+      addBounds((uz * vy - uy * vz) / det, (ux * vz - uz * vx) / det);
+    }
+    if (count == 3 && radius[2] < 1e-6) return;
+    const double a = uz * ux / longest, b = uz * uy / longest, length = std::sqrt(longest);
+    addBounds(a, b);
+    // Tilts of 45 and 72 degrees in space: the radii hold the scales.
+    if (!(radius[0] > 0)) return;
+    const double px = -uy / length, py = ux / length;
+    const double unit = radius[2] / std::sqrt(px * px * radius[0] * radius[0] + py * py * radius[1] * radius[1]);
+    for (const double tilt : {unit, -unit, 3 * unit, -3 * unit}) addBounds(a + px * tilt, b + py * tilt);
   }
-  if (r >= 0) {
-    const double vx = x[r] - x[p], vy = y[r] - y[p], vz = z[r] - z[p], det = ux * vy - uy * vx;
-    addBounds((uz * vy - uy * vz) / det, (ux * vz - uz * vx) / det);
-  }
-  if (count == 3 && radius[2] < 1e-6) return;
-  const double a = uz * ux / longest, b = uz * uy / longest, length = std::sqrt(longest);
-  addBounds(a, b);
-  // Tilts of 45 and 72 degrees in space: the radii hold the scales.
-  if (!(radius[0] > 0)) return;
-  const double px = -uy / length, py = ux / length;
-  const double unit = radius[2] / std::sqrt(px * px * radius[0] * radius[0] + py * py * radius[1] * radius[1]);
-  for (const double tilt : {unit, -unit, 3 * unit, -3 * unit}) addBounds(a + px * tilt, b + py * tilt);
-}
+};
 
 /// Whether the window has a volume, and all numbers of a volume are finite and of some size.
 bool isUsable(const Drawing& drawing, const Volume& volume) {

@@ -2,12 +2,11 @@
 //
 // Each footprint is drawn as its box of whole pixels. Sides and depth bounds are evaluated at the pixels' centres,
 // relative to the view's tile: the rasteriser snaps and interpolates nothing that counts.
-#include "visibility/gl_executor.h"
-
 #include <stdexcept>
 #include <string>
 
-#include "visibility/gl_functions.h"
+#include "visibility/executor.h"
+#include "visibility/opengl.h"
 
 namespace fcl_artic {
 namespace visibility {

@@ -10,12 +10,13 @@
 #include <stdexcept>
 #include <string>
 
+#include "visibility/executor.h"
+#include "visibility/opengl.h"
+
 #define EGL_NO_X11
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GL/osmesa.h>
-
-#include "visibility/gl_executor.h"
 
 namespace fcl_artic {
 namespace {
@@ -29,9 +30,10 @@ void* openLibrary(std::initializer_list<const char*> names) {
 }
 
 template <class F>
-void load(void* library, const char* name, F& function) {
-  function = reinterpret_cast<F>(dlsym(library, name));
+F load(void* library, const char* name) {
+  void* const function = dlsym(library, name);
   if (!function) throw std::runtime_error(std::string("the library lacks ") + name);
+  return reinterpret_cast<F>(function);
 }
 
 std::runtime_error noVersion(const char* library, int major, int minor) {
@@ -39,34 +41,20 @@ std::runtime_error noVersion(const char* library, int major, int minor) {
                             std::to_string(minor));
 }
 
-#define FCL_ARTIC_OSMESA(X) \
-  X(CreateContextAttribs) X(DestroyContext) X(MakeCurrent) X(GetCurrentContext) X(GetProcAddress)
-#define FCL_ARTIC_EGL(X)                                                                                      \
-  X(GetProcAddress)                                                                                           \
-  X(QueryString)                                                                                              \
-  X(Initialize) X(BindAPI) X(QueryAPI) X(CreateContext) X(DestroyContext) X(MakeCurrent) X(GetCurrentContext) \
-      X(GetCurrentDisplay) X(GetCurrentSurface) X(ReleaseThread)
-
 struct Osmesa {
-#define FCL_ARTIC_DECLARE(name) decltype(&::OSMesa##name) name = nullptr;
-  FCL_ARTIC_OSMESA(FCL_ARTIC_DECLARE)
-#undef FCL_ARTIC_DECLARE
-  Osmesa() {
-    void* const library = openLibrary({"libOSMesa.so.8", "libOSMesa.so"});
-#define FCL_ARTIC_LOAD(name) load(library, "OSMesa" #name, name);
-    FCL_ARTIC_OSMESA(FCL_ARTIC_LOAD)
-#undef FCL_ARTIC_LOAD
-  }
+  void* const library = openLibrary({"libOSMesa.so.8", "libOSMesa.so"});
+#define FCL_ARTIC_OSMESA(name) const decltype(&::OSMesa##name) name = load<decltype(name)>(library, "OSMesa" #name)
+  FCL_ARTIC_OSMESA(CreateContextAttribs);
+  FCL_ARTIC_OSMESA(DestroyContext);
+  FCL_ARTIC_OSMESA(MakeCurrent);
+  FCL_ARTIC_OSMESA(GetCurrentContext);
+  FCL_ARTIC_OSMESA(GetProcAddress);
 };
 
 class OsmesaContext : public OffscreenContext {
  public:
   OsmesaContext(int major, int minor) {
-    const int wanted[] = {OSMESA_FORMAT,
-                          OSMESA_RGBA,
-                          OSMESA_DEPTH_BITS,
-                          0,
-                          OSMESA_PROFILE,
+    const int wanted[] = {OSMESA_PROFILE,
                           OSMESA_CORE_PROFILE,
                           OSMESA_CONTEXT_MAJOR_VERSION,
                           major,
@@ -101,17 +89,24 @@ class OsmesaContext : public OffscreenContext {
 };
 
 struct Egl {
-#define FCL_ARTIC_DECLARE(name) decltype(&::egl##name) name = nullptr;
-  FCL_ARTIC_EGL(FCL_ARTIC_DECLARE)
-#undef FCL_ARTIC_DECLARE
+  void* const library = openLibrary({"libEGL.so.1", "libEGL.so"});
+#define FCL_ARTIC_EGL(name) const decltype(&::egl##name) name = load<decltype(name)>(library, "egl" #name)
+  FCL_ARTIC_EGL(GetProcAddress);
+  FCL_ARTIC_EGL(QueryString);
+  FCL_ARTIC_EGL(Initialize);
+  FCL_ARTIC_EGL(BindAPI);
+  FCL_ARTIC_EGL(QueryAPI);
+  FCL_ARTIC_EGL(CreateContext);
+  FCL_ARTIC_EGL(DestroyContext);
+  FCL_ARTIC_EGL(MakeCurrent);
+  FCL_ARTIC_EGL(GetCurrentContext);
+  FCL_ARTIC_EGL(GetCurrentDisplay);
+  FCL_ARTIC_EGL(GetCurrentSurface);
+  FCL_ARTIC_EGL(ReleaseThread);
   EGLDisplay display = EGL_NO_DISPLAY;
   bool mesa = false;
 
   Egl() {
-    void* const library = openLibrary({"libEGL.so.1", "libEGL.so"});
-#define FCL_ARTIC_LOAD(name) load(library, "egl" #name, name);
-    FCL_ARTIC_EGL(FCL_ARTIC_LOAD)
-#undef FCL_ARTIC_LOAD
     const auto devices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(GetProcAddress("eglQueryDevicesEXT"));
     EGLDeviceEXT device = nullptr;
     EGLint count = 0;

@@ -54,34 +54,13 @@ bool comesInto(const engine::Node& box, const Bounds* parts, std::uint32_t lanes
   return false;
 }
 
-class Stage {
- public:
-  /// @param tolerance_distance  of the query, m: what is nearer stays, since the solver alone may take it for a
-  /// contact.
-  Stage(const VisibilityCuller& culler, double tolerance_distance, Report& report)
-      : culler_(culler), tolerance_distance_(tolerance_distance), report_(report) {}
+struct Stage {
+  const VisibilityCuller& culler;
+  double tolerance_distance;  ///< of the query, m: what is nearer stays; the solver alone may take it for a contact
+  Report& report;
 
-  /// engine::Advisor::clear.
-  static void clear(void* stage, const engine::Problem& problem, const SweptLink* links, CullCandidate* candidates,
-                    std::int32_t n) {
-    using Clock = std::chrono::steady_clock;
-    const Clock::time_point begin = Clock::now();
-    auto& self = *static_cast<Stage*>(stage);
-    CullCandidate* const end = candidates + n;
-    for (CullCandidate *from = candidates, *to = from; from < end; from = to) {
-      while (to < end && to->swept == from->swept) ++to;
-      self.look(problem, links + kParts * from->swept, from, to);
-    }
-    self.report_.work.us += std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
-  }
-
- private:
   void look(const engine::Problem& problem, const SweptLink* link, CullCandidate* begin, CullCandidate* end);
   void count(const CullCandidate* pair, const CullCandidate* end);
-
-  const VisibilityCuller& culler_;
-  const double tolerance_distance_;
-  Report& report_;
 };
 
 /// Draws what a link sweeps and those pieces of its candidates that the 13 directions leave. Clears candidates of which
@@ -93,7 +72,7 @@ void Stage::look(const engine::Problem& problem, const SweptLink* link, CullCand
   thread_local std::vector<CullCandidate*> pairs, drawn;  // first candidates of those looked at; one for each group
   thread_local std::vector<std::uint8_t> may;
   drawing.clear();
-  drawing.resolution = culler_.options().resolution;
+  drawing.resolution = culler.options().resolution;
   pairs.clear();
   drawn.clear();
   SweptParts swept;
@@ -119,7 +98,7 @@ void Stage::look(const engine::Problem& problem, const SweptLink* link, CullCand
     }
     const std::size_t before = drawing.pieces.size();
     std::uint32_t met = c->lanes;
-    const double margin = c->margin + tolerance_distance_;
+    const double margin = c->margin + tolerance_distance;
     if (!addPieces(*still.tree, c->node, *c->at, margin, swept, most, met, reach, drawing)) continue;
     if (drawing.pieces.size() == before) {
       c->lanes = 0;
@@ -134,21 +113,35 @@ void Stage::look(const engine::Problem& problem, const SweptLink* link, CullCand
   for (int k = 0; k < kParts; ++k) {
     if (lanes >> k & 1) drawing.swept.push_back(drawing.addVolume(link[k].points[0], 6, link[k].radius));
   }
-  report_.executor = drawBy(culler_, drawing, may);
+  report.executor = drawBy(culler, drawing, may);
   for (std::size_t group = 0; group < drawn.size(); ++group) {
     if (!may[group]) drawn[group]->lanes = 0;
   }
-  report_.work.pieces += drawing.pieces.size();
+  report.work.pieces += drawing.pieces.size();
   for (const CullCandidate* pair : pairs) count(pair, end);
 }
 
 /// Counts a pair, or the nodes of a large body.
 void Stage::count(const CullCandidate* pair, const CullCandidate* end) {
-  VisibilityStatistics& work = report_.work;
+  VisibilityStatistics& work = report.work;
   std::uint64_t free = 0, all = 0;
   for (const CullCandidate* c = pair; c < end && c->pair == pair->pair; ++c, ++all) free += c->lanes == 0;
   ++work.pairs;
   (free == all ? work.culled : work.nodes) += free == all ? 1 : free;
+}
+
+/// engine::Advisor::clear.
+void clear(void* stage, const engine::Problem& problem, const SweptLink* links, CullCandidate* candidates,
+           std::int32_t n) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  auto& self = *static_cast<Stage*>(stage);
+  CullCandidate* const end = candidates + n;
+  for (CullCandidate *from = candidates, *to = from; from < end; from = to) {
+    while (to < end && to->swept == from->swept) ++to;
+    self.look(problem, links + kParts * from->swept, from, to);
+  }
+  self.report.work.us += std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
 }
 
 /// Passes progress on. A second solve begins at 0 again; what is proven stays proven. Who has said no is asked no more.
@@ -176,10 +169,10 @@ void solve(const VisibilityCuller& culler, const SolveFunction& solver, const en
     asked.progress = &Progress::update;
     asked.progress_context = &progress;
   }
-  Stage stage(culler, query.tolerance_distance, report);
+  Stage stage = {culler, query.tolerance_distance, report};
   engine::Advisor advisor;
   advisor.self = &stage;
-  advisor.clear = &Stage::clear;
+  advisor.clear = &clear;
   engine::Query advised = asked;
   advised.ask(advisor);
   solver(advised, answer);

@@ -145,30 +145,6 @@ Eigen::Vector3d around(double angle, double radius, double z) {
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
-/// A mesh of cubes all around the arm's way, one object: stage 1 goes into it and leaves nothing to stage 2 until a
-/// cube is in the way.
-TEST_F(ArmAmidBalls, MeshAllAroundIsLeftOutUntilOneOfItsCubesIsInTheWay) {
-  std::vector<Eigen::Vector3d> centers;
-  for (int i = 0; i < 40; ++i) {
-    centers.push_back(around(0.16 * i, 1.3, 0));
-    centers.push_back(around(0.16 * i, 0.7, i % 2 ? 0.3 : -0.3));
-  }
-  request_.visibility = VisibilityMode::on;
-  add(cubes(centers), Eigen::Vector3d::Zero());
-  manager_->setup();
-  manager_->continuousCollide(motion(0, 0.8), request_, result_);
-  EXPECT_EQ(result_.status, fcl_artic::Status::free);
-  EXPECT_EQ(result_.statistics.pairs_after_culling, 0u);
-  EXPECT_EQ(result_.statistics.visibility.pairs, 0u);
-  centers.push_back(around(0.4, 0.7, 0));
-  add(cubes(centers), Eigen::Vector3d::Zero());
-  manager_->setup();
-  manager_->continuousCollide(motion(0, 0.8), request_, result_);
-  EXPECT_EQ(result_.status, fcl_artic::Status::contact);
-  EXPECT_EQ(result_.statistics.visibility.pairs, 1u);
-  EXPECT_EQ(result_.statistics.visibility.culled, 0u);
-}
-
 /// Slivers run past the arm at an angle: their boxes meet its line swept sphere, they do not. One more lies in the
 /// sphere, and in the arm or not: the pair stays, the other nodes go, and the solver looks at what is left.
 TEST_F(ArmAmidBalls, NodesOfAMeshAreCulled) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// OpenGL's functions as a context gives them: nothing is linked.
+// OpenGL's functions as a context gives them, for the executor and for pictures: nothing is linked.
 #pragma once
 
 #include <initializer_list>
+#include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -15,6 +17,15 @@
 
 namespace fcl_artic {
 namespace visibility {
+
+/// Held while an OpenGL context is made, used or destroyed: one of the library's contexts is at work at a time. (Mesa's
+/// software rasteriser reads, without a lock, what other contexts of a display are drawing; doc/VISIBILITY.md,
+/// "Contexts".)
+std::mutex& openGlMutex();
+
+/// The rule in OpenGL 4.3: the views side by side, one draw of what is swept, one of the pieces, one read.
+/// @throws std::runtime_error when a shader or buffer can't be had.
+std::unique_ptr<Executor> makeGlExecutor(std::unique_ptr<OffscreenContext> context);
 
 /// One context's functions, under their names without "gl".
 struct GlFunctions {
