@@ -5,11 +5,12 @@
 // - sizes from a thousandth of a pixel to twenty windows,
 // - triangles edge-on to a view,
 // - grazing to 1e-12,
-// - windows off the grid and cut close,
+// - windows off the grid and cut close, or with the touching point at a corner of pixels,
 // - swept volumes inside solids.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "pairs/random.h"
@@ -72,6 +73,7 @@ class Adversary {
     for (Vector3d& corner : object) corner += on_swept - on_object;
     const bool cut = random_.chance(0.2) && gap == 0;
     setWindow(swept, radius, cut ? &on_swept : nullptr, drawing);
+    if (gap == 0 && random_.chance(0.3)) moveToCorner(on_swept, drawing);
     drawing.swept.push_back(addVolume(swept, radius, drawing));
     drawing.pieces.push_back({addVolume(object, 0, drawing), drawing.num_groups++});
   }
@@ -138,6 +140,17 @@ class Adversary {
       const double part = random_.unit(), room = random_.chance(0.3) ? 1e-3 : std::max(1 - (hi - lo), 1e-6);
       drawing.lo[k] = lo - room * part - 1e-9;
       drawing.hi[k] = hi + room * (1 - part) + 1e-9;
+    }
+  }
+  /// Moves the window by less than a pixel: the touching point comes to where pixels meet, and rounding counts.
+  void moveToCorner(const Vector3d& point, visibility::Drawing& drawing) {
+    for (int k = 0; k < 3; ++k) {
+      const double pixel = (drawing.hi[k] - drawing.lo[k]) / drawing.resolution,
+                   at = (point[k] - drawing.lo[k]) / pixel;
+      const double off = (random_.below(2) ? 1 : -1) * random_.logUniform(1e-9, 1e-5);
+      const double by = (at - std::clamp(std::round(at), 1.0, drawing.resolution - 1.0) + off) * pixel;
+      drawing.lo[k] += by;
+      drawing.hi[k] += by;
     }
   }
 

@@ -119,6 +119,22 @@ TEST_P(AnyExecutor, BallsThatAreApartAreCulled) {
   EXPECT_FALSE(mayOverlap());
 }
 
+/// Two swept balls, one after the other along an axis, and a piece in one of them.
+TEST_P(AnyExecutor, EachSweptVolumeCounts) {
+  for (int k = 0; k < 3; ++k) {
+    for (const bool in_first : {true, false}) {
+      drawing_.clear();
+      test::Vector3d first = test::Vector3d::Constant(0.3), second = first;
+      second[k] = 0.8;
+      for (const test::Vector3d& at : {first, second})
+        drawing_.swept.push_back(test::Adversary::addVolume({at}, 0.1, drawing_));
+      drawing_.pieces.push_back({test::Adversary::addVolume({in_first ? first : second}, 0.05, drawing_), 0});
+      drawing_.num_groups = 1;
+      EXPECT_TRUE(mayOverlap()) << "axis " << k << ", in the first: " << in_first;
+    }
+  }
+}
+
 TEST_P(AnyExecutor, WhatIsNotFiniteMayOverlap) {
   const Drawing good = drawing_;
   for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL, 1e300}) {

@@ -3,7 +3,9 @@
 // is told to say.
 #include "visibility/stage.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -33,7 +35,7 @@ TEST(Pieces, AreThoseThatMeetTheParts) {
     triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
   const auto tree = ShapeTree::fromTriangles(vertices, triangles);
-  std::size_t found = 0, too_many = 0;
+  std::size_t found = 0, too_many = 0, balls = 0;
   for (int trial = 0; trial < 200; ++trial) {
     const Eigen::Matrix3d turn = random.rotation();
     const Vector3d at = 2 * random.direction();
@@ -76,7 +78,27 @@ TEST(Pieces, AreThoseThatMeetTheParts) {
     EXPECT_EQ(lanes, added ? met : asked) << trial;
     found += drawing.pieces.size();
     too_many += !added;
+    // With balls around nodes: each of these pieces lies in what is drawn.
+    visibility::Drawing coarse;
+    swept.least = 0.2;
+    lanes = asked;
+    if (!visibility::addPieces(tree->view(), 0, placement, margin, swept, 2 * kMost, lanes, reach, coarse)) continue;
+    for (const visibility::Drawing::Piece& piece : drawing.pieces) {
+      for (int i = 0; i < piece.volume.count; ++i) {
+        const auto x = Vector3d::Map(drawing.points.data() + 3 * (piece.volume.first + i));
+        const bool held = std::any_of(coarse.pieces.begin(), coarse.pieces.end(), [&](const auto& other) {
+          double nearest = HUGE_VAL;
+          for (int k = 0; k < other.volume.count; ++k)
+            nearest =
+                std::min(nearest, (x - Vector3d::Map(coarse.points.data() + 3 * (other.volume.first + k))).norm());
+          return nearest + piece.volume.radius <= other.volume.radius + 1e-12;
+        });
+        EXPECT_TRUE(held) << trial;
+      }
+    }
+    for (const visibility::Drawing::Piece& piece : coarse.pieces) balls += piece.volume.count == 1;
   }
+  EXPECT_GT(balls, 1000u);
   EXPECT_GT(found, 1000u);
   EXPECT_GT(too_many, 5u);
   EXPECT_LT(too_many, 80u);
