@@ -43,7 +43,8 @@ std::runtime_error noVersion(const char* library, int major, int minor) {
 
 struct Osmesa {
   void* const library = openLibrary({"libOSMesa.so.8", "libOSMesa.so"});
-#define FCL_ARTIC_OSMESA(name) const decltype(&::OSMesa##name) name = load<decltype(name)>(library, "OSMesa" #name)
+#define FCL_ARTIC_OSMESA(name) \
+  const decltype(&::OSMesa##name) name = load<decltype(name)>(library, "OSMesa" #name)  // NOLINT
   FCL_ARTIC_OSMESA(CreateContextAttribs);
   FCL_ARTIC_OSMESA(DestroyContext);
   FCL_ARTIC_OSMESA(MakeCurrent);
@@ -90,7 +91,7 @@ class OsmesaContext : public OffscreenContext {
 
 struct Egl {
   void* const library = openLibrary({"libEGL.so.1", "libEGL.so"});
-#define FCL_ARTIC_EGL(name) const decltype(&::egl##name) name = load<decltype(name)>(library, "egl" #name)
+#define FCL_ARTIC_EGL(name) const decltype(&::egl##name) name = load<decltype(name)>(library, "egl" #name)  // NOLINT
   FCL_ARTIC_EGL(GetProcAddress);
   FCL_ARTIC_EGL(QueryString);
   FCL_ARTIC_EGL(Initialize);
