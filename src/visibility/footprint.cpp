@@ -11,7 +11,8 @@ namespace {
 
 /// Bounds on a handful of roundings in double, in any rounding mode, and on five in float.
 constexpr double kDouble = 0x1p-48, kFloat = 0x1p-20;
-/// Volumes farther away than this, in sides of the window, are not drawn: products of three such numbers are finite.
+/// Volumes farther away than this, in sides of the window, are not drawn; nor are windows so large or small, in m:
+/// products of three such numbers are finite.
 constexpr double kFarthest = 1e20;
 /// Steeper bounds, in windows per pixel, bound nothing.
 constexpr double kSteepest = 4;
@@ -134,7 +135,7 @@ bool isUsable(const Drawing& drawing, const Volume& volume) {
   const double* points = drawing.points.data() + 3 * static_cast<std::ptrdiff_t>(volume.first);
   for (int k = 0; k < 3; ++k) {
     const double side = drawing.hi[k] - drawing.lo[k], farthest = kFarthest * side;
-    usable = usable && side > 0 && farthest < std::numeric_limits<double>::infinity() && volume.radius < farthest;
+    usable = usable && side > 1 / kFarthest && side < kFarthest && volume.radius < farthest;
     for (int i = 0; i < volume.count; ++i) usable = usable && std::abs(points[3 * i + k] - drawing.lo[k]) < farthest;
   }
   return usable;

@@ -10,7 +10,7 @@
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/base/spaces/SO2StateSpace.h>
 
-#include "../../src/visibility/batch.h"
+#include "../../src/visibility/executor.h"
 #include "../urdf/temp_folder.h"
 #include "slide.h"
 

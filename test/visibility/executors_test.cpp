@@ -161,7 +161,7 @@ TEST_P(AnyExecutor, WhatIsNotFiniteMayOverlap) {
 TEST_P(AnyExecutor, WindowWithoutVolumeMayOverlap) {
   const Drawing good = drawing_;
   for (int k = 0; k < 3; ++k) {
-    for (const double hi : {0.0, -1.0}) {
+    for (const double hi : {0.0, -1.0, 1e-310}) {
       drawing_ = good;
       drawing_.hi[k] = hi;
       EXPECT_TRUE(mayOverlap());
