@@ -249,10 +249,17 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// @throws std::invalid_argument: no such obstacle or attached object; a speed negative or not finite, a time not
   ///   finite.
   void setObjectSpeed(const std::string& name, const ObjectSpeed& speed);
+  /// Sets how much earlier or later than the motion says the robot may be, against obstacles that have a motion of their
+  /// own: `free` then holds for every shift of their time by up to that much. Before its motion begins, and after it
+  /// ends, an obstacle stands. Needs setup(), which throws std::invalid_argument if nothing bounds an obstacle's speed.
+  /// Certificates do not state it: a request for one throws std::invalid_argument.
+  /// @param time  in the unit of the motion's time, s for most trajectories; a JointMotion takes 1. Finite, at least 0.
+  /// @throws std::invalid_argument: a number that is negative or not finite.
+  void setTimeTolerance(double time);
   /// Whether an object has a speed (setObjectSpeed()). Answers about motions then hold for these motions only, not for
   /// plans that are made of them: objects have longer to move meanwhile.
   bool hasSpeeds() const;
-  /// Forgets the tolerances of joints, the base and objects, and the objects' speeds. Needs setup().
+  /// Forgets the tolerances of joints, the base, objects and time, and the objects' speeds. Needs setup().
   void resetTolerances();
   /// Returns all tolerances in one line for people, as "joints 0.3 deg, base 2 mm"; empty if there is none.
   std::string describeTolerances() const;

@@ -608,9 +608,18 @@ void bindChanges(py::class_<World>& world) {
           "1 s.",
           py::arg("name"), py::arg("speed"), py::arg("since") = 0.0)
       .def(
+          "set_time_tolerance",
+          [](World& w, double time) {
+            w.manager().change([&](ArticulatedCollisionManager& m) { m.setTimeTolerance(time); });
+          },
+          "Sets how much earlier or later than the motion says the robot may be, against obstacles with a motion of "
+          "their\n"
+          "own (add_moving()): s for a trajectory in seconds; a motion without times takes 1.",
+          py::arg("time"))
+      .def(
           "reset_tolerances",
           [](World& w) { w.manager().change([](ArticulatedCollisionManager& m) { m.resetTolerances(); }); },
-          "Forgets the tolerances of joints, base and objects, and the objects' speeds.")
+          "Forgets the tolerances of joints, base, objects and time, and the objects' speeds.")
       .def_property_readonly(
           "tolerances",
           [](const World& w) {

@@ -33,6 +33,9 @@ struct Body {
   double stray = 0;
   /// From the time `since` on (Clock) each of its points may move away from there at this speed, m per unit of time.
   double speed = 0, since = 0;
+  /// Of an obstacle with a motion: TubeAsked::times times this is how far it may be from where the motion has it by being
+  /// earlier or later, m.
+  double lag = 0;
   /// Still bodies: axis-aligned box in the world.
   double lo[3] = {}, hi[3] = {};
 };
@@ -117,6 +120,7 @@ struct Problem : PairNumbering {
   BaseStray base;                                ///< against all that is no link
   double largest_stray = 0;                      ///< of bodies
   double largest_speed = 0, earliest_since = 0;  ///< the same
+  double largest_lag = 0;                        ///< the same
   /// Where a mesh is a solid: asked of each pair with one, at a pose. Null: all meshes are surfaces.
   void (*contained)(const Body& a, const Body& b, const PairPose& pose, ContainmentVerdict& found) = nullptr;
 

@@ -32,6 +32,7 @@ struct Clock {
 struct TubeAsked {
   double factor = 1;  ///< times which lengths and angles count, at least 0
   Clock clock;
+  double times = 1;  ///< no less than how often the whole motion fits into a unit of time (Body::lag)
 };
 
 struct Query {

@@ -258,20 +258,24 @@ Heading headingOf(const BodyMotion& motion, const UnitVector& own) {
   return heading;
 }
 
-void enclosePath(const BodyMotion& motion, const Vector3d& lower, const Vector3d& upper, Vector3d& path_lower,
-                 Vector3d& path_upper) {
-  path_lower.setConstant(-kInfinity);
-  path_upper.setConstant(kInfinity);
-  if (!lower.allFinite() || !upper.allFinite()) return;
-
+double reachOf(const BodyMotion& motion, const Vector3d& lower, const Vector3d& upper) {
+  if (!lower.allFinite() || !upper.allFinite()) return kInfinity;
   double reach = 0;  // a norm is largest at a corner
   for (int corner = 0; corner < 8; ++corner) {
     const Vector3d x(corner & 1 ? upper[0] : lower[0], corner & 2 ? upper[1] : lower[1],
                      corner & 4 ? upper[2] : lower[2]);
     reach = std::max(reach, (motion.after * x).norm());
   }
-  reach += 0x1p-52 * (motion.after.ulps() + 40) * (motion.after.length() + lower.norm() + upper.norm());
-  const PathBounds path = boundPath(motion, reach);
+  return reach + 0x1p-52 * (motion.after.ulps() + 40) * (motion.after.length() + lower.norm() + upper.norm());
+}
+
+void enclosePath(const BodyMotion& motion, const Vector3d& lower, const Vector3d& upper, Vector3d& path_lower,
+                 Vector3d& path_upper) {
+  path_lower.setConstant(-kInfinity);
+  path_upper.setConstant(kInfinity);
+  if (!lower.allFinite() || !upper.allFinite()) return;
+
+  const PathBounds path = boundPath(motion, reachOf(motion, lower, upper));
 
   // The number of pieces with which the boxes grow by 1/500 of the path's size, 256 at most. Infinity and NaN choose
   // 256.

@@ -54,6 +54,9 @@ struct PathBounds {
 };
 /// @param reach  largest distance of the body's points from the frame that `after` leads from.
 PathBounds boundPath(const BodyMotion& motion, double reach);
+/// Upper bound of the distance of a box's points from the frame that `after` leads from; infinite if the box is.
+/// @param lower, upper  in the geometry's frame.
+double reachOf(const BodyMotion& motion, const Eigen::Vector3d& lower, const Eigen::Vector3d& upper);
 
 /// A direction fixed in a body, as its motion has it in the world.
 struct Heading {

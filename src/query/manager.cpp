@@ -172,6 +172,11 @@ void ArticulatedCollisionManager::setObjectSpeed(const std::string& name, const 
   impl_->setup.tolerancesChanged();
 }
 
+void ArticulatedCollisionManager::setTimeTolerance(double time) {
+  impl_->registry.setTimeTolerance(time);
+  impl_->setup.tolerancesChanged();
+}
+
 bool ArticulatedCollisionManager::hasSpeeds() const {
   return impl_->registry.tolerances().anySpeed();
 }
@@ -205,6 +210,11 @@ std::string ArticulatedCollisionManager::describeTolerances() const {
     char text[96];
     std::snprintf(text, sizeof text, "' moving at up to %.6g m per unit of time from %.6g on", own.speed, own.since);
     all += (all.empty() ? "'" : ", '") + name + text;
+  }
+  if (tolerances.ofTime() > 0) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.6g units of time", tolerances.ofTime());
+    all += (all.empty() ? "" : ", ") + std::string(text);
   }
   return all;
 }

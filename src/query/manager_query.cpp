@@ -258,9 +258,12 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
     throw std::invalid_argument(
         "Method::redon2004 does not know tolerances of joints, base or objects; resetTolerances() takes them away");
   }
+  if (setup.lags() && request.certificate) {
+    throw std::invalid_argument("certificates do not state that obstacles are earlier or later (setTimeTolerance)");
+  }
   engine::Query query = makeQuery(request);
   query.check_scene = request.check_scene;
-  query.tube = {context.stray_factor, context.clock};
+  query.tube = {context.stray_factor, context.clock, (1 + 0x1p-50) / context.duration};
   if (context.limit) {
     query.max_contacts = 1;
     query.describe_contacts = false;

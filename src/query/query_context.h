@@ -29,6 +29,7 @@ inline TimePart partOfTime(const JointTrajectory& trajectory, std::size_t piece)
 struct ArticulatedCollisionManager::QueryContext {
   TimePart time;            ///< the part of the moving obstacles' motions that the query's [0, 1] is
   engine::Clock clock;      ///< the time that has passed since the motion's begin, in the motion's unit
+  double duration = 1;      ///< no more than the whole motion takes, in that unit
   bool own_margins = true;  ///< pairs' own margins hold; false: those of neighbours alone (clearance())
   double stray_factor = 1;  ///< times which tolerances of joints, base and objects count; 0: they do not
   /// Pairs of the engine's problem: only their initial contacts may be ignored; null: those of all pairs may.
@@ -53,6 +54,7 @@ struct ArticulatedCollisionManager::QueryContext {
     time = partOfTime(trajectory, piece);
     const double begin = trajectory.beginTime();
     clock = {trajectory.times()[piece] - begin, trajectory.times()[piece + 1] - begin};
+    duration = (trajectory.endTime() - begin) * (1 - 0x1p-50);  // rounded down
   }
 };
 

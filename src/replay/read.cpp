@@ -119,6 +119,8 @@ class Builder {
         return manager.setObjectTolerance(own.name, of_pose);
       case ToleranceRecord::Of::speed:
         return manager.setObjectSpeed(own.name, {own.speed, own.since});
+      case ToleranceRecord::Of::time:
+        return manager.setTimeTolerance(own.time);
     }
   }
 

@@ -226,31 +226,34 @@ void fields(A& a, MarginRecord& m) {
   a("of", m.of);
   a("margin", m.margin);
 }
-/// A tolerance that is not 0, or a joint's own; or the speed of an object.
+/// A tolerance that is not 0, or a joint's own; or the speed of an object, or the tolerance of time.
 struct ToleranceRecord {
-  enum class Of { joints, joint, base, object, speed };
+  enum class Of { joints, joint, base, object, speed, time };
   Of of = Of::joints;
   std::string name;  ///< of a joint or an object
   double angle = 0, length = 0;
   double speed = 0, since = 0;
+  double time = 0;
   Eigen::Vector3d pivot = Eigen::Vector3d::Zero();  ///< of a base or an object
 
   bool operator==(const ToleranceRecord& other) const {
     return of == other.of && name == other.name && angle == other.angle && length == other.length &&
-           speed == other.speed && since == other.since && pivot == other.pivot;
+           speed == other.speed && since == other.since && time == other.time && pivot == other.pivot;
   }
 };
 inline constexpr NamedValue<ToleranceRecord::Of> kToleranceKinds[] = {{ToleranceRecord::Of::joints, "joints"},
                                                                       {ToleranceRecord::Of::joint, "joint"},
                                                                       {ToleranceRecord::Of::base, "base"},
                                                                       {ToleranceRecord::Of::object, "object"},
-                                                                      {ToleranceRecord::Of::speed, "speed"}};
+                                                                      {ToleranceRecord::Of::speed, "speed"},
+                                                                      {ToleranceRecord::Of::time, "time"}};
 constexpr const auto& namesOf(ToleranceRecord::Of) {
   return kToleranceKinds;
 }
 template <class A>
 void fields(A& a, ToleranceRecord& t) {
   a("of", t.of);
+  if (t.of == ToleranceRecord::Of::time) return a("time", t.time);
   const bool named = t.of != ToleranceRecord::Of::joints && t.of != ToleranceRecord::Of::base;
   if (named) a("name", t.name);
   if (t.of == ToleranceRecord::Of::speed) {

@@ -141,14 +141,17 @@ class Recorder {
     const JointTolerance& all = tolerances.ofAllJoints();
     const PoseTolerance& base = tolerances.base();
     const auto add = [&](Of of, const std::string& name, const auto& tolerance, const Eigen::Vector3d& pivot) {
-      record_.tolerances.push_back({of, name, tolerance.angle, tolerance.length, 0, 0, pivot});
+      record_.tolerances.push_back({of, name, tolerance.angle, tolerance.length, 0, 0, 0, pivot});
     };
     if (all.any()) add(Of::joints, {}, all, Eigen::Vector3d::Zero());
     for (const auto& [name, own] : tolerances.ofJoints()) add(Of::joint, name, own, Eigen::Vector3d::Zero());
     if (base.any()) add(Of::base, {}, base, base.pivot);
     for (const auto& [name, own] : tolerances.ofObjects()) add(Of::object, name, own, own.pivot);
     for (const auto& [name, own] : tolerances.speeds()) {
-      record_.tolerances.push_back({Of::speed, name, 0, 0, own.speed, own.since, Eigen::Vector3d::Zero()});
+      record_.tolerances.push_back({Of::speed, name, 0, 0, own.speed, own.since, 0, Eigen::Vector3d::Zero()});
+    }
+    if (tolerances.ofTime() > 0) {
+      record_.tolerances.push_back({Of::time, {}, 0, 0, 0, 0, tolerances.ofTime(), Eigen::Vector3d::Zero()});
     }
   }
 

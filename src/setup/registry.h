@@ -123,6 +123,7 @@ class Registry {
     requireObject(name, "setObjectTolerance");
     tolerances_.setObject(name, tolerance);
   }
+  void setTimeTolerance(double time) { tolerances_.setTime(time); }
   void setObjectSpeed(const std::string& name, const ObjectSpeed& speed) {
     requireObject(name, "setObjectSpeed");
     tolerances_.setSpeed(name, speed);

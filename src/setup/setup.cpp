@@ -51,12 +51,14 @@ void Setup::setStrays(const Registry& registry) {
   for (FrameSweep& sweep : sweeps_) sweep.setStrays(strays_.of_robot.of_joint);
   const PoseTolerance& base = tolerances.base();
   strays_.base = {base.length, base.angle, {base.pivot[0], base.pivot[1], base.pivot[2]}};
-  strays_.largest = strays_.largest_speed = strays_.earliest_since = 0;
+  strays_.largest = strays_.largest_speed = strays_.earliest_since = strays_.largest_lag = 0;
   strays_.moves = false;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const ManagedBody& body = registry.body(static_cast<std::int32_t>(i));
     bodies_[i].stray = body.empty() ? 0 : tolerances.strayOf(body.name, *body.shape);
     strays_.largest = std::max(strays_.largest, bodies_[i].stray);
+    bodies_[i].lag = body.moving && !body.empty() ? tolerances.lagOf(body.name, *body.shape, body.motion) : 0;
+    strays_.largest_lag = std::max(strays_.largest_lag, bodies_[i].lag);
     const ObjectSpeed speed = body.empty() ? ObjectSpeed() : tolerances.speedOf(body.name);
     bodies_[i].speed = speed.speed;
     bodies_[i].since = speed.since;
@@ -65,7 +67,7 @@ void Setup::setStrays(const Registry& registry) {
     strays_.largest_speed = std::max(strays_.largest_speed, speed.speed);
     strays_.moves = true;
   }
-  strays_.any = tolerances.any();
+  strays_.any = tolerances.any() || strays_.largest_lag > 0;
   for (engine::LinkPair& pair : link_pairs_) pair.stray = strays_.any ? strayOf(pair) : 0;
 }
 
@@ -139,6 +141,7 @@ engine::Problem Setup::problem() const {
   p.largest_stray = strays_.largest;
   p.largest_speed = strays_.largest_speed;
   p.earliest_since = strays_.earliest_since;
+  p.largest_lag = strays_.largest_lag;
   p.contained = solids_ ? &findContained : nullptr;
   return p;
 }

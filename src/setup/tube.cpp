@@ -83,6 +83,11 @@ void NamedTolerances::setSpeed(const std::string& name, const ObjectSpeed& speed
   speed_of_[name] = speed;
 }
 
+void NamedTolerances::setTime(double time) {
+  requireNotNegative(time, "the tolerance of time");
+  of_time_ = time;
+}
+
 ObjectSpeed NamedTolerances::speedOf(const std::string& object) const {
   const auto found = speed_of_.find(object);
   return found == speed_of_.end() ? ObjectSpeed() : found->second;
@@ -162,6 +167,16 @@ double NamedTolerances::strayOf(const std::string& object, const ShapeTree& shap
   };
   const double farthest = corner(root.lo).max(corner(root.hi)).matrix().norm();
   return (tolerance.length + tolerance.angle * farthest) * (1 + 8 * kUlp);
+}
+
+double NamedTolerances::lagOf(const std::string& object, const ShapeTree& shape, const BodyMotion& motion) const {
+  if (!(of_time_ > 0) || motion.elements.empty()) return 0;
+  const double speed = boundPath(motion, reachOf(motion, shape.lower(), shape.upper())).speed;
+  if (!std::isfinite(speed)) {
+    throw std::invalid_argument("setup(): nothing bounds the speed of obstacle '" + object +
+                                "', as setTimeTolerance() needs it");
+  }
+  return of_time_ * speed * (1 + 0x1p-40);
 }
 
 }  // namespace fcl_artic

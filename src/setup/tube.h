@@ -11,6 +11,7 @@
 #include "fcl_artic/kinematic_tree.h"
 #include "fcl_artic/tube.h"
 #include "geometry/shape_tree.h"
+#include "motion/body_motion.h"
 
 namespace fcl_artic {
 
@@ -38,6 +39,9 @@ class NamedTolerances {
   void setObject(const std::string& name, const PoseTolerance& tolerance);
   /// @throws std::invalid_argument: a number that is not finite, a negative speed.
   void setSpeed(const std::string& name, const ObjectSpeed& speed);
+  /// @throws std::invalid_argument: a number negative or not finite.
+  void setTime(double time);
+  double ofTime() const { return of_time_; }
   const JointTolerance& ofAllJoints() const { return of_all_joints_; }
   const std::map<std::string, JointTolerance>& ofJoints() const { return of_joint_; }
   const std::map<std::string, PoseTolerance>& ofObjects() const { return of_object_; }
@@ -49,17 +53,23 @@ class NamedTolerances {
   /// Forgets those of objects of other names than these.
   void keep(const std::function<bool(const std::string& name)>& isKept);
 
-  /// Some joint or object strays, or an object moves by itself.
+  /// Some joint or object strays, or an object moves by itself. (The tolerance of time is for moving obstacles.)
   bool any() const;
   /// @throws std::invalid_argument: a joint with a tolerance is in the tree no more, or is another one by now.
   TreeStrays straysOf(const KinematicTree& tree) const;
   /// Upper bound of how far any point of an object's geometry may be from where the object's pose puts it, m.
   /// @param shape  in the object's own frame.
   double strayOf(const std::string& object, const ShapeTree& shape) const;
+  /// The tolerance of time multiplied by an upper bound of the speed of any point of an obstacle, m times the unit of the
+  /// motion's time: the motion as a whole takes 1.
+  /// @param shape  in the object's own frame.
+  /// @throws std::invalid_argument naming the obstacle: nothing bounds its speed.
+  double lagOf(const std::string& object, const ShapeTree& shape, const BodyMotion& motion) const;
 
  private:
   JointTolerance of_all_joints_;
   PoseTolerance of_base_;
+  double of_time_ = 0;
   std::map<std::string, JointTolerance> of_joint_;
   std::map<std::string, PoseTolerance> of_object_;
   std::map<std::string, ObjectSpeed> speed_of_;

@@ -37,7 +37,8 @@ class Strays : PartOfSolver {
   /// No obstacle's is larger.
   double largest() const {
     if (!any()) return 0;
-    return factor() * problem().largest_stray + wayOf(problem().largest_speed, problem().earliest_since, 1);
+    return factor() * problem().largest_stray + wayOf(problem().largest_speed, problem().earliest_since, 1) +
+           query().tube.times * problem().largest_lag;
   }
 
  private:
@@ -81,8 +82,10 @@ class Strays : PartOfSolver {
   double ofBase(const Body& link);
   /// How far something comes by itself until t.
   double wayOf(double speed, double since, double t) const;
-  /// How far a body strays by itself until t: its pose's tolerance and its own way.
-  double ofBody(const Body& body, double t) const { return factor() * body.stray + wayOf(body.speed, body.since, t); }
+  /// How far a body strays by itself until t: its pose's tolerance, its own way, and its motion's being early or late.
+  double ofBody(const Body& body, double t) const {
+    return factor() * body.stray + wayOf(body.speed, body.since, t) + query().tube.times * body.lag;
+  }
   /// Sums over the steps up to one, of the world's sweep.
   struct Form {
     bool made = false;
