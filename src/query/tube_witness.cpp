@@ -260,6 +260,8 @@ class WitnessSearch {
     const Order order = orderOf(registry_.body(parts.a));
     const std::int32_t numbers[2] = {order.of_a ? parts.b : parts.a, order.of_a ? parts.a : parts.b};
     const ManagedBody* const bodies[2] = {&registry_.body(numbers[0]), &registry_.body(numbers[1])};
+    // A motion that only its author knows is looked at by the engine, and nowhere else.
+    if (asked_.problem.sweeps[parts.sweep].local_bounds) return false;
     const PointsOfContact points(registry_, asked_.time, *bodies[0], *bodies[1], contact,
                                  asked_.motion.configuration(leaf.t), leaf.t);
     PairAtRest pair(asked_, registry_, leaf.pair, workspace_.engine);

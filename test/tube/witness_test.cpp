@@ -59,6 +59,27 @@ TEST(Tube, AWitnessMovesTheBase) {
   }
 }
 
+TEST(Tube, AWitnessMovesTheBaseBeforeWhatMoves) {
+  // The other ball comes from (1, 0.3, 0) to (1, 0.1, 0).
+  OneTurn arm;
+  const auto motion =
+      std::make_shared<fcl::TranslationMotiond>(pose(Vector3d(1, 0.3, 0), 0.4), pose(Vector3d(1, 0.1, 0), 0.4));
+  arm.manager->registerObject(
+      std::make_shared<fcl::ContinuousCollisionObjectd>(std::make_shared<fcl::Sphered>(kRadius), motion), "ball");
+  for (const PoseTolerance& most :
+       {PoseTolerance{0.13, 0, Vector3d::Zero()}, PoseTolerance{0, 0.13, Vector3d::Zero()}}) {
+    arm.manager->setBaseTolerance(most);
+    const CertifiedResult result = arm.turn(0, 0);
+    ASSERT_TRUE(result.certain);
+    const CertifiedContact& contact = result.contacts.at(0);
+    EXPECT_LE(contact.base_deviation.translation().norm(), most.length);
+    EXPECT_LE(turnOf(contact.base_deviation), most.angle);
+    const Vector3d tip = contact.base_deviation * Vector3d::UnitX();
+    EXPECT_LE((tip - Vector3d(1, 0.3 - 0.2 * contact.t_upper, 0)).norm(), 2 * kRadius + kRounding);
+    EXPECT_NEAR(contact.t_upper, 0.75, 0.03);  // they are 0.15 apart; few later times are tried
+  }
+}
+
 TEST(Tube, AWitnessMovesObstacles) {
   // The obstacle's frame is turned: what it is off by is in its own frame, also while it moves.
   const double gap = 0.08;
