@@ -122,19 +122,21 @@ struct Room {
 
   Room() = default;
   Room(const PoseTolerance& tolerance, double factor, double way)
-      : length(factor * tolerance.length + way), angle(factor * tolerance.angle), pivot(tolerance.pivot) {}
+      : length(std::min(factor * tolerance.length + way, kFarthest)),
+        angle(std::min(factor * tolerance.angle, M_PI)),
+        pivot(tolerance.pivot) {}
 
   /// A deviation that is certainly within: it takes a point x as far along d as that goes, to first order. A matrix
   /// means the proper rotation next to it, off by Rotation::kUlps at most, which adds less than 2^-46 to its angle. The
   /// pivot goes where the numbers say to within the same times its distance from the origin.
   /// @param d  a unit vector.
   RigidTransform towards(const Vector3d& x, const Vector3d& d) const {
-    const double turn = std::min(angle, M_PI) * (1 - 0x1p-44) - 0x1p-44;
+    const double turn = angle * (1 - 0x1p-44) - 0x1p-44;
     const double slide = length * (1 - 0x1p-44) - 0x1p-44 * pivot.norm();
     const Vector3d axis = (x - pivot).cross(d);
     const double lever = axis.norm();
     RigidTransform deviation;
-    if (turn > 0 && lever > 0) {
+    if (turn > 0 && lever > 0 && pivot.norm() <= kFarthest) {
       const Matrix3d R = Eigen::AngleAxisd(turn, axis / lever).toRotationMatrix();
       if (const auto rotation = Rotation::within12Ulps(R, 1e-9)) {
         deviation = RigidTransform(Rotation(), pivot) * RigidTransform(*rotation, Vector3d::Zero()) *
@@ -284,8 +286,9 @@ class WitnessSearch {
         if (touches(all)) return true;
         // With all of its room a body may go through the other one and out again.
         const double needed = std::min(1.0, gap / std::max(gap, points.closing(nominal, all, t)));
+        const double beyond = needed > 0 ? std::min(needed, 1 - needed) : 1;
         for (const double depth : {0.125, 0.5}) {
-          const double part = needed + depth * (1 - needed);
+          const double part = needed + depth * beyond;
           if (part < 1 && touches(points.byPoses(joints, rooms.times(part), t))) return true;
         }
       }

@@ -80,6 +80,30 @@ TEST(Tube, AWitnessMovesTheBaseBeforeWhatMoves) {
   }
 }
 
+TEST(Tube, ToleranceOfAnySizeHasAWitnessOrNone) {
+  OneTurn arm;
+  arm.manager->registerObject(ball(kRadius, Vector3d(1, 0.1, 0)), "ball");
+  const Vector3d far(0, 0, 1e300);
+  int certain = 0;
+  for (const PoseTolerance& most :
+       {PoseTolerance{1e300, 0, Vector3d::Zero()}, PoseTolerance{0.1, 1e300, Vector3d::Zero()},
+        PoseTolerance{0.1, 0.1, far}, PoseTolerance{0, 1e-300, far}, PoseTolerance{1e-300, 0, far}}) {
+    for (const bool base : {false, true}) {
+      arm.manager->setBaseTolerance(base ? most : PoseTolerance());
+      arm.manager->setObjectTolerance("ball", base ? PoseTolerance() : most);
+      const CertifiedResult result = arm.turn(0, 0);
+      EXPECT_TRUE(result.isFree() || result.status == Status::contact);
+      certain += result.certain;
+      if (!result.certain) continue;
+      const CertifiedContact& c = result.contacts.at(0);
+      const Vector3d tip = c.base_deviation * Vector3d::UnitX(),
+                     other = Vector3d(1, 0.1, 0) + c.deviation2.translation();
+      EXPECT_LE((tip - other).norm(), 2 * kRadius + kRounding);
+    }
+  }
+  EXPECT_GE(certain, 2);
+}
+
 TEST(Tube, AWitnessMovesObstacles) {
   // The obstacle's frame is turned: what it is off by is in its own frame, also while it moves.
   const double gap = 0.08;
