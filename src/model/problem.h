@@ -33,8 +33,7 @@ struct Body {
   double stray = 0;
   /// From the time `since` on (Clock) each of its points may move away from there at this speed, m per unit of time.
   double speed = 0, since = 0;
-  /// Of an obstacle with a motion: TubeAsked::times times this is how far it may be from where the motion has it by being
-  /// earlier or later, m.
+  /// Times TubeAsked::times: how far an obstacle may be from where its motion has it, by being early or late, m.
   double lag = 0;
   /// Still bodies: axis-aligned box in the world.
   double lo[3] = {}, hi[3] = {};
@@ -95,6 +94,11 @@ struct PairParts {
   const Placement *inverse_a, *placement_b;
 };
 
+/// No body's stray, speed or lag is larger, and none may move earlier (Body).
+struct LargestStrays {
+  double stray = 0, speed = 0, earliest_since = 0, lag = 0;
+};
+
 /// Everything that stays the same from query to query. (PairNumbering is for the pairs' numbers.)
 struct Problem : PairNumbering {
   const Body* bodies = nullptr;
@@ -109,18 +113,16 @@ struct Problem : PairNumbering {
   std::int32_t num_link_pairs = 0;
   const MoverRow* mover_rows = nullptr;  ///< all link pairs again, by movers: most are done with once these are seen
   std::int32_t num_mover_rows = 0;
-  std::int32_t first_in_rows = 0;                ///< what rows call link pair 0
-  const std::uint8_t* link_allowed = nullptr;    ///< per link pair: 1 = may touch; null: none may
-  const std::uint8_t* scene_allowed = nullptr;   ///< per scene pair: 1 = may touch; null: none may
-  std::int32_t num_scene_allowed = 0;            ///< scene pairs that may touch
-  const std::int32_t* obstacles = nullptr;       ///< body of obstacle o
-  const StillBounds* still_bounds = nullptr;     ///< of obstacle o
-  const WideNode* obstacle_tree = nullptr;       ///< boxes in the world; leaf piece = obstacle; null when there is none
-  bool strays = false;                           ///< a step, a body or the base strays
-  BaseStray base;                                ///< against all that is no link
-  double largest_stray = 0;                      ///< of bodies
-  double largest_speed = 0, earliest_since = 0;  ///< the same
-  double largest_lag = 0;                        ///< the same
+  std::int32_t first_in_rows = 0;               ///< what rows call link pair 0
+  const std::uint8_t* link_allowed = nullptr;   ///< per link pair: 1 = may touch; null: none may
+  const std::uint8_t* scene_allowed = nullptr;  ///< per scene pair: 1 = may touch; null: none may
+  std::int32_t num_scene_allowed = 0;           ///< scene pairs that may touch
+  const std::int32_t* obstacles = nullptr;      ///< body of obstacle o
+  const StillBounds* still_bounds = nullptr;    ///< of obstacle o
+  const WideNode* obstacle_tree = nullptr;      ///< boxes in the world; leaf piece = obstacle; null when there is none
+  bool strays = false;                          ///< a step, a body or the base strays
+  BaseStray base;                               ///< against all that is no link
+  LargestStrays largest;                        ///< of bodies
   /// Where a mesh is a solid: asked of each pair with one, at a pose. Null: all meshes are surfaces.
   void (*contained)(const Body& a, const Body& b, const PairPose& pose, ContainmentVerdict& found) = nullptr;
 

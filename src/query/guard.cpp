@@ -434,11 +434,11 @@ void Guard::ask(const LiveScene::Snapshot& scene, double now, double path_time, 
   const double reacting = guard.options.reaction + guard.options.period;
   const double fastest = guard.path->fastestOver(guard.path_time, answer.stop_at, guard.weight);
   Separation& s = answer.separation;
-  s.human_reacting = kUp * problem.largest_speed * (std::max(0.0, guard.age) + reacting);
-  s.human_stopping = kUp * problem.largest_speed * std::max(0.0, chosen.time - reacting);
+  s.human_reacting = kUp * problem.largest.speed * (std::max(0.0, guard.age) + reacting);
+  s.human_stopping = kUp * problem.largest.speed * std::max(0.0, chosen.time - reacting);
   s.robot_reacting = fastest * chosen.reacting;
   s.robot_stopping = fastest * std::max(0.0, chosen.way - chosen.reacting);
-  s.object = problem.largest_stray;
+  s.object = problem.largest.stray;
   s.robot = problem.base.length + problem.base.angle * (guard.reach + Eigen::Vector3d::Map(problem.base.pivot).norm());
   const std::vector<JointTolerance>& of_joint = guard.manager->impl_->setup.jointTolerances();
   for (std::size_t j = 0; j < of_joint.size(); ++j) {

@@ -241,12 +241,10 @@ struct ToleranceRecord {
            speed == other.speed && since == other.since && time == other.time && pivot == other.pivot;
   }
 };
-inline constexpr NamedValue<ToleranceRecord::Of> kToleranceKinds[] = {{ToleranceRecord::Of::joints, "joints"},
-                                                                      {ToleranceRecord::Of::joint, "joint"},
-                                                                      {ToleranceRecord::Of::base, "base"},
-                                                                      {ToleranceRecord::Of::object, "object"},
-                                                                      {ToleranceRecord::Of::speed, "speed"},
-                                                                      {ToleranceRecord::Of::time, "time"}};
+inline constexpr NamedValue<ToleranceRecord::Of> kToleranceKinds[] = {
+    {ToleranceRecord::Of::joints, "joints"}, {ToleranceRecord::Of::joint, "joint"},
+    {ToleranceRecord::Of::base, "base"},     {ToleranceRecord::Of::object, "object"},
+    {ToleranceRecord::Of::speed, "speed"},   {ToleranceRecord::Of::time, "time"}};
 constexpr const auto& namesOf(ToleranceRecord::Of) {
   return kToleranceKinds;
 }

@@ -51,23 +51,23 @@ void Setup::setStrays(const Registry& registry) {
   for (FrameSweep& sweep : sweeps_) sweep.setStrays(strays_.of_robot.of_joint);
   const PoseTolerance& base = tolerances.base();
   strays_.base = {base.length, base.angle, {base.pivot[0], base.pivot[1], base.pivot[2]}};
-  strays_.largest = strays_.largest_speed = strays_.earliest_since = strays_.largest_lag = 0;
+  engine::LargestStrays& largest = strays_.largest = {};
   strays_.moves = false;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const ManagedBody& body = registry.body(static_cast<std::int32_t>(i));
     bodies_[i].stray = body.empty() ? 0 : tolerances.strayOf(body.name, *body.shape);
-    strays_.largest = std::max(strays_.largest, bodies_[i].stray);
+    largest.stray = std::max(largest.stray, bodies_[i].stray);
     bodies_[i].lag = body.moving && !body.empty() ? tolerances.lagOf(body.name, *body.shape, body.motion) : 0;
-    strays_.largest_lag = std::max(strays_.largest_lag, bodies_[i].lag);
+    largest.lag = std::max(largest.lag, bodies_[i].lag);
     const ObjectSpeed speed = body.empty() ? ObjectSpeed() : tolerances.speedOf(body.name);
     bodies_[i].speed = speed.speed;
     bodies_[i].since = speed.since;
     if (!(speed.speed > 0)) continue;
-    strays_.earliest_since = strays_.moves ? std::min(strays_.earliest_since, speed.since) : speed.since;
-    strays_.largest_speed = std::max(strays_.largest_speed, speed.speed);
+    largest.earliest_since = strays_.moves ? std::min(largest.earliest_since, speed.since) : speed.since;
+    largest.speed = std::max(largest.speed, speed.speed);
     strays_.moves = true;
   }
-  strays_.any = tolerances.any() || strays_.largest_lag > 0;
+  strays_.any = tolerances.any() || largest.lag > 0;
   for (engine::LinkPair& pair : link_pairs_) pair.stray = strays_.any ? strayOf(pair) : 0;
 }
 
@@ -138,10 +138,7 @@ engine::Problem Setup::problem() const {
   p.still_bounds = still_.bounds.data();
   p.strays = strays_.any;
   p.base = strays_.base;
-  p.largest_stray = strays_.largest;
-  p.largest_speed = strays_.largest_speed;
-  p.earliest_since = strays_.earliest_since;
-  p.largest_lag = strays_.largest_lag;
+  p.largest = strays_.largest;
   p.contained = solids_ ? &findContained : nullptr;
   return p;
 }

@@ -69,7 +69,7 @@ class Setup {
   /// Whether the robot or an obstacle strays.
   bool strays() const { return strays_.any; }
   /// Whether an obstacle with a motion may be earlier or later.
-  bool lags() const { return strays_.largest_lag > 0; }
+  bool lags() const { return strays_.largest.lag > 0; }
   /// Whether an object moves by itself (ObjectSpeed).
   bool moves() const { return strays_.moves; }
   const LinkTables& tables() const { return *tables_; }
@@ -115,9 +115,7 @@ class Setup {
   struct Strays {
     TreeStrays of_robot;
     engine::BaseStray base;
-    double largest = 0;                            ///< of a body
-    double largest_speed = 0, earliest_since = 0;  ///< of bodies that move by themselves
-    double largest_lag = 0;                        ///< Body::lag
+    engine::LargestStrays largest;
     bool any = false, moves = false;
   };
   Strays strays_;

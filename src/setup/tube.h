@@ -60,8 +60,8 @@ class NamedTolerances {
   /// Upper bound of how far any point of an object's geometry may be from where the object's pose puts it, m.
   /// @param shape  in the object's own frame.
   double strayOf(const std::string& object, const ShapeTree& shape) const;
-  /// The tolerance of time multiplied by an upper bound of the speed of any point of an obstacle, m times the unit of the
-  /// motion's time: the motion as a whole takes 1.
+  /// The tolerance of time multiplied by an upper bound of the speed of an obstacle's points. (The speed is in m, as
+  /// the motion as a whole takes 1.)
   /// @param shape  in the object's own frame.
   /// @throws std::invalid_argument naming the obstacle: nothing bounds its speed.
   double lagOf(const std::string& object, const ShapeTree& shape, const BodyMotion& motion) const;

@@ -22,8 +22,8 @@ struct Crossing {
   std::shared_ptr<fcl::ContinuousCollisionObjectd> other;
   explicit Crossing(double late) {
     const auto at = [&](double x) { return Eigen::Isometry3d(Eigen::Translation3d(late + x, 0, 0)); };
-    other = std::make_shared<fcl::ContinuousCollisionObjectd>(
-        std::make_shared<fcl::Sphered>(kRadius), std::make_shared<fcl::TranslationMotiond>(at(-1), at(1)));
+    other = std::make_shared<fcl::ContinuousCollisionObjectd>(std::make_shared<fcl::Sphered>(kRadius),
+                                                              std::make_shared<fcl::TranslationMotiond>(at(-1), at(1)));
     cart.manager->registerObject(other, "other");
   }
   CertifiedResult run(double duration, int pieces) {

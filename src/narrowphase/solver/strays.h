@@ -37,8 +37,8 @@ class Strays : PartOfSolver {
   /// No obstacle's is larger.
   double largest() const {
     if (!any()) return 0;
-    return factor() * problem().largest_stray + wayOf(problem().largest_speed, problem().earliest_since, 1) +
-           query().tube.times * problem().largest_lag;
+    return factor() * problem().largest.stray + wayOf(problem().largest.speed, problem().largest.earliest_since, 1) +
+           query().tube.times * problem().largest.lag;
   }
 
  private:
