@@ -102,9 +102,16 @@ fcl_artic::JointTolerance toleranceOf(const KinematicTree& tree, const std::stri
 
 }  // namespace
 
+std::ostream& operator<<(std::ostream& out, const BodyName& body) {
+  const char* kind[] = {"link", "attached body", "object"};
+  return out << kind[body.kind] << " '" << body.id << '\'';
+}
+
 bool CellTolerances::any() const {
   const auto isAbove = [](const auto& entry) { return entry.second > 0; };
-  return joints.any() || base.any() || objects > 0 || std::any_of(own.begin(), own.end(), isAbove);
+  return joints.any() || base.any() || objects > 0 || object_speed > 0 ||
+         std::any_of(own.begin(), own.end(), isAbove) ||
+         std::any_of(object_speeds.begin(), object_speeds.end(), isAbove);
 }
 
 Cell::Cell(moveit::core::RobotModelConstPtr model) : model_(std::move(model)) {
@@ -335,15 +342,23 @@ void Cell::setTolerances(const std::vector<Body>& bodies, const CellTolerances& 
   }
   manager_->setBaseTolerance(tolerances.base);
   tolerances_text_ = manager_->describeTolerances();
-  if (tolerances.objects == 0) return;
   fcl_artic::PoseTolerance of_object;
   of_object.length = tolerances.objects;
+  double fastest = 0;
   for (const Body& body : bodies) {
-    if (body.moveit.kind == BodyName::object) manager_->setObjectTolerance(body.name, of_object);
+    if (body.moveit.kind != BodyName::object) continue;
+    const auto own = tolerances.object_speeds.find(body.moveit.id);
+    const double speed = own == tolerances.object_speeds.end() ? tolerances.object_speed : own->second;
+    manager_->setObjectTolerance(body.name, of_object);
+    manager_->setObjectSpeed(body.name, {speed, 0});
+    fastest = std::max(fastest, speed);
   }
-  std::ostringstream objects;
-  objects << (tolerances_text_.empty() ? "" : ", ") << "objects " << 1000 * tolerances.objects << " mm";
-  tolerances_text_ += objects.str();
+  std::ostringstream text;
+  text << tolerances_text_;
+  const auto comma = [&] { return text.tellp() > 0 ? ", " : ""; };
+  if (tolerances.objects > 0) text << comma() << "objects " << 1000 * tolerances.objects << " mm";
+  if (fastest > 0) text << comma() << "objects moving at up to " << fastest << " m/s";
+  tolerances_text_ = text.str();
 }
 
 /// A pair that is wanted and not checked would go into `free` unseen.

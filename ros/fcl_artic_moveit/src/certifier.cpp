@@ -4,79 +4,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
-#include <geometric_shapes/shapes.h>
-#include <moveit/robot_state/attached_body.hpp>
+#include "carried.h"
 
 namespace fcl_artic_moveit {
 namespace {
 
 using fcl_artic::Status;
-using moveit::core::AttachedBody;
-using moveit::core::RobotState;
-
-bool sameBody(const AttachedBody& a, const AttachedBody& b) {
-  if (a.getAttachedLinkName() != b.getAttachedLinkName() || a.getShapes() != b.getShapes() ||
-      a.getTouchLinks() != b.getTouchLinks()) {
-    return false;
-  }
-  for (std::size_t i = 0; i < a.getShapePosesInLinkFrame().size(); ++i) {
-    if (!a.getShapePosesInLinkFrame()[i].isApprox(b.getShapePosesInLinkFrame()[i])) return false;
-  }
-  return true;
-}
-
-/// A trajectory along which bodies come and go is none that a manager is asked about.
-void requireSameBodies(const robot_trajectory::RobotTrajectory& trajectory) {
-  if (trajectory.getWayPointCount() == 0) throw std::invalid_argument("the trajectory has no waypoint");
-  std::map<std::string, const AttachedBody*> first, here;
-  trajectory.getWayPoint(0).getAttachedBodies(first);
-  for (std::size_t k = 1; k < trajectory.getWayPointCount(); ++k) {
-    here.clear();
-    trajectory.getWayPoint(k).getAttachedBodies(here);
-    for (const auto* all : {&first, &here}) {
-      for (const auto& [name, body] : *all) {
-        const auto a = first.find(name), b = here.find(name);
-        if (a != first.end() && b != here.end() && sameBody(*a->second, *b->second)) continue;
-        throw std::invalid_argument("waypoint " + std::to_string(k) + " does not carry '" + name +
-                                    "' as waypoint 0 does");
-      }
-    }
-  }
-}
-
-/// Whether they are one body, maybe made of a message twice, each time with shapes of its own.
-bool likeBody(const AttachedBody& a, const AttachedBody& b) {
-  if (a.getAttachedLinkName() != b.getAttachedLinkName() || a.getShapes().size() != b.getShapes().size()) return false;
-  for (std::size_t i = 0; i < a.getShapes().size(); ++i) {
-    if (a.getShapes()[i]->type != b.getShapes()[i]->type) return false;
-    if (!a.getShapePosesInLinkFrame()[i].isApprox(b.getShapePosesInLinkFrame()[i])) return false;
-  }
-  return true;
-}
-
-/// A planner whose waypoints have lost what the robot carries leaves a trajectory of another robot.
-void requireBodiesOf(const RobotState& start, const RobotState& first) {
-  std::map<std::string, const AttachedBody*> carried, here;
-  start.getAttachedBodies(carried);
-  first.getAttachedBodies(here);
-  for (const auto& [name, body] : carried) {
-    const auto found = here.find(name);
-    if (found != here.end() && likeBody(*body, *found->second)) continue;
-    throw std::invalid_argument("the robot starts with '" + name + "' on link '" + body->getAttachedLinkName() +
-                                "', and waypoint 0 " +
-                                (found == here.end() ? "does not carry it" : "carries it otherwise"));
-  }
-}
-
-std::ostream& operator<<(std::ostream& out, const BodyName& body) {
-  const char* kind[] = {"link", "attached body", "object"};
-  return out << kind[body.kind] << " '" << body.id << '\'';
-}
 
 /// A contact's pair, and what became of it.
 void tell(std::ostream& out, const Verdict& verdict, const Verdict::Contact& contact) {

@@ -2,13 +2,7 @@
 //
 // The node part: parameters, the planning scene, error codes, markers. All decisions are in certifier.cpp.
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <locale>
-#include <map>
 #include <memory>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -21,12 +15,12 @@
 #include <visualization_msgs/msg/marker_array.hpp>
 
 #include "fcl_artic_moveit/certifier.h"
+#include "node_parameters.h"
 
 namespace fcl_artic_moveit {
 namespace {
 
 constexpr const char* kName = "CertifySolution";
-constexpr double kMaxBudget = 9007199254740992;  // 2^53: all whole numbers up to it are doubles
 
 /// The values of the parameters.
 struct Settings {
@@ -36,62 +30,25 @@ struct Settings {
   RepairOptions how;  ///< clearance
 };
 
-/// The adapter's parameters on a node, below a prefix. All but the topic may be set while the node runs, and are read
-/// anew for each plan.
+/// The adapter's parameters. All but the topic may be set while the node runs, and are read anew for each plan.
 class Parameters {
  public:
   /// Declares them, with the values of the node's YAML files.
   /// @throws std::invalid_argument, rclcpp's exceptions, naming the parameter.
-  Parameters(rclcpp::Node& node, std::string prefix) : node_(node), prefix_(std::move(prefix)) {
-    declare(
-        "interpolation", rclcpp::ParameterValue("auto"),
-        "what lies between two waypoints, as fcl_artic certify names it. joint_trajectory_controller: jtc by its "
-        "interpolation_method splines, jtc-none by none, jtc-upsampled of its topic by positions_upsampling.enable; "
-        "others: auto, linear, cubic, quintic, blends, tangent-half-angle");
-    declare("blend", rclcpp::ParameterValue(0.0), "s, half the duration of a blend, of interpolation blends", 0);
-    declare("turns", rclcpp::ParameterValue("ask"),
-            "steps of half a turn or more of joints that turn forever: ask, given, shortest");
-    declare("margin", rclcpp::ParameterValue(0.0), "m that every pair has to keep beyond the padding", 0);
-    declare("joint_tolerance_angle", rclcpp::ParameterValue(0.0),
-            "rad by which each joint that turns may be off; free is every path within", 0);
-    declare("joint_tolerance_length", rclcpp::ParameterValue(0.0), "m by which each joint that slides may be off", 0);
-    declare("joint_tolerances", rclcpp::ParameterValue(std::vector<std::string>()),
-            "of single joints, in place of these: JOINT=VALUE, rad or m");
-    declare("base_tolerance_length", rclcpp::ParameterValue(0.0), "m by which the robot's base may be off", 0);
-    declare("base_tolerance_angle", rclcpp::ParameterValue(0.0),
-            "rad by which it may be turned about the origin of the model's frame", 0);
-    declare("object_tolerance", rclcpp::ParameterValue(0.0), "m by which each object of the world may be off", 0);
-    declare("mimic_tolerance", rclcpp::ParameterValue(1e-3),
-            "rad or m by which a mimic joint of the group may be off from where its master has it", 0);
-    declare("budget", rclcpp::ParameterValue(std::int64_t{0}), "tests after which a plan is undecided; 0: no limit", 0);
-    declare("time_limit", rclcpp::ParameterValue(0.0),
-            "s after which a plan is undecided; 0: the request's allowed_planning_time", 0);
-    declare("on_undecided", rclcpp::ParameterValue("refuse"), "refuse, or warn and let the plan pass");
-    declare("repair", rclcpp::ParameterValue(false),
-            "whether a plan that touches is replaced by a way around, timed anew and certified");
-    declare("repair_clearance", rclcpp::ParameterValue(0.005), "m that such a way keeps beyond margin and padding", 0);
-    declare("display_contacts_topic", rclcpp::ParameterValue("display_contacts"),
-            "topic of the visualization_msgs/MarkerArray; empty: none", -1, true);
+  Parameters(rclcpp::Node& node, const std::string& prefix) : of_(node, prefix) {
+    of_.declareCertifier(0);
+    of_.declare("time_limit", rclcpp::ParameterValue(0.0),
+                "s after which a plan is undecided; 0: the request's allowed_planning_time", 0);
+    of_.declare("on_undecided", rclcpp::ParameterValue("refuse"), "refuse, or warn and let the plan pass");
+    of_.declare("repair", rclcpp::ParameterValue(false),
+                "whether a plan that touches is replaced by a way around, timed anew and certified");
+    of_.declare("repair_clearance", rclcpp::ParameterValue(0.005), "m that such a way keeps beyond margin and padding",
+                0);
+    of_.declare("display_contacts_topic", rclcpp::ParameterValue("display_contacts"),
+                "topic of the visualization_msgs/MarkerArray; empty: none", -1, true);
     (void)settings();
-    guard_ = node.add_on_set_parameters_callback([this](const std::vector<rclcpp::Parameter>& changed) {
-      rcl_interfaces::msg::SetParametersResult result;
-      result.successful = true;
-      const auto own = [this](const rclcpp::Parameter& one) { return one.get_name().rfind(prefix_, 0) == 0; };
-      if (std::none_of(changed.begin(), changed.end(), own)) return result;
-      try {
-        for (const rclcpp::Parameter& one : changed) {
-          // If it was declared before, it may not be read-only.
-          if (one.get_name() == prefix_ + "display_contacts_topic" && !(one == node_.get_parameter(one.get_name()))) {
-            throw std::invalid_argument(one.get_name() + " counts when the pipeline starts, and not after");
-          }
-        }
-        (void)settings(changed);
-      } catch (const std::exception& error) {
-        result.successful = false;
-        result.reason = error.what();
-      }
-      return result;
-    });
+    guard_ = of_.onChange({"display_contacts_topic"},
+                          [this](const std::vector<rclcpp::Parameter>& changed) { (void)settings(changed); });
   }
 
   /// @param changed  values that count before the node's.
@@ -99,30 +56,15 @@ class Parameters {
   Settings settings(const std::vector<rclcpp::Parameter>& changed = {}) const {
     Settings out;
     try {
-      out.certifier.motion.interpolation = interpolationNamed(text("interpolation", changed));
-      out.certifier.motion.turns = turnsNamed(text("turns", changed));
-      out.certifier.motion.blend = number("blend", changed);
-      out.certifier.margin = number("margin", changed);
-      CellTolerances& tolerances = out.certifier.tolerances;
-      tolerances.joints = {number("joint_tolerance_angle", changed), number("joint_tolerance_length", changed)};
-      tolerances.own = toleranceByJoint(parameter("joint_tolerances", changed));
-      tolerances.base.length = number("base_tolerance_length", changed);
-      tolerances.base.angle = number("base_tolerance_angle", changed);
-      tolerances.objects = number("object_tolerance", changed);
-      out.certifier.motion.mimic_tolerance = number("mimic_tolerance", changed);
-      out.certifier.time_limit = number("time_limit", changed);
+      out.certifier = of_.certifier(changed);
+      out.certifier.time_limit = of_.number("time_limit", changed);
       out.certifier.check();
-      const double budget = number("budget", changed);
-      if (!(budget >= 0 && budget <= kMaxBudget) || budget != std::floor(budget)) {
-        throw std::invalid_argument("budget is " + std::to_string(budget) + "; it has to be a whole number, 0 or more");
-      }
-      out.certifier.budget = static_cast<std::uint64_t>(budget);
-      const std::string on_undecided = text("on_undecided", changed);
+      const std::string on_undecided = of_.text("on_undecided", changed);
       if (on_undecided != "refuse" && on_undecided != "warn") {
         throw std::invalid_argument("'" + on_undecided + "' is no value of on_undecided: refuse, warn are");
       }
       out.refuse_undecided = on_undecided == "refuse";
-      const rclcpp::Parameter repair = parameter("repair", changed);
+      const rclcpp::Parameter repair = of_.parameter("repair", changed);
       if (repair.get_type() != rclcpp::ParameterType::PARAMETER_BOOL) {
         throw std::invalid_argument("repair is " + repair.value_to_string() + ", not true or false");
       }
@@ -130,86 +72,16 @@ class Parameters {
       if (out.repair && !Certifier::canRepair()) {
         throw std::invalid_argument("repair: this package was built without fcl_artic's component ompl");
       }
-      out.how.clearance = number("repair_clearance", changed);
+      out.how.clearance = of_.number("repair_clearance", changed);
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument("parameters " + prefix_ + "*: " + error.what());
+      throw std::invalid_argument("parameters " + of_.prefix() + "*: " + error.what());
     }
     return out;
   }
-  std::string topic() const { return text("display_contacts_topic", {}); }
+  std::string topic() const { return of_.text("display_contacts_topic"); }
 
  private:
-  /// @param least  of a number; below 0: of a text.
-  void declare(const std::string& name, rclcpp::ParameterValue value, const std::string& description, double least = -1,
-               bool read_only = false) {
-    rcl_interfaces::msg::ParameterDescriptor descriptor;
-    descriptor.description = description;
-    descriptor.read_only = read_only;
-    if (value.get_type() == rclcpp::ParameterType::PARAMETER_DOUBLE) {
-      descriptor.dynamic_typing = true;  // YAML's `margin: 0` is an integer
-      descriptor.floating_point_range.resize(1);
-      descriptor.floating_point_range[0].from_value = least;
-      descriptor.floating_point_range[0].to_value = std::numeric_limits<double>::max();
-    } else if (value.get_type() == rclcpp::ParameterType::PARAMETER_INTEGER) {
-      descriptor.integer_range.resize(1);
-      descriptor.integer_range[0].from_value = static_cast<std::int64_t>(least);
-      descriptor.integer_range[0].to_value = static_cast<std::int64_t>(kMaxBudget);
-    }
-    const std::string full = prefix_ + name;
-    if (!node_.has_parameter(full)) {
-      node_.declare_parameter(full, value, descriptor);
-      return;
-    }
-    // move_group declares all that its YAML files have, without descriptions.
-    const rcl_interfaces::msg::ParameterDescriptor before = node_.describe_parameter(full);
-    if (!before.dynamic_typing || before.read_only) return;
-    value = node_.get_parameter(full).get_parameter_value();
-    node_.undeclare_parameter(full);
-    node_.declare_parameter(full, value, descriptor, true);
-  }
-
-  /// @throws std::invalid_argument naming what is not JOINT=VALUE, or is a joint's second one.
-  static std::map<std::string, double> toleranceByJoint(const rclcpp::Parameter& given) {
-    std::map<std::string, double> out;
-    if (given.get_type() == rclcpp::ParameterType::PARAMETER_NOT_SET) return out;  // YAML's [] has no type
-    if (given.get_type() != rclcpp::ParameterType::PARAMETER_STRING_ARRAY) {
-      throw std::invalid_argument("joint_tolerances is " + given.value_to_string() + ", no list of JOINT=VALUE");
-    }
-    for (const std::string& one : given.as_string_array()) {
-      const std::size_t equals = one.rfind('=');
-      std::istringstream number(equals == std::string::npos ? "" : one.substr(equals + 1));
-      number.imbue(std::locale::classic());
-      double value = 0;
-      if (equals == 0 || !(number >> value) || !(number >> std::ws).eof()) {
-        throw std::invalid_argument("joint_tolerances: '" + one + "' is not JOINT=VALUE, with rad or m as a number");
-      }
-      if (!out.emplace(one.substr(0, equals), value).second) {
-        throw std::invalid_argument("joint_tolerances: '" + one + "' is a second one of this joint");
-      }
-    }
-    return out;
-  }
-
-  rclcpp::Parameter parameter(const std::string& name, const std::vector<rclcpp::Parameter>& changed) const {
-    for (const rclcpp::Parameter& one : changed) {
-      if (one.get_name() == prefix_ + name) return one;
-    }
-    return node_.get_parameter(prefix_ + name);
-  }
-  std::string text(const std::string& name, const std::vector<rclcpp::Parameter>& changed) const {
-    const rclcpp::Parameter value = parameter(name, changed);
-    if (value.get_type() == rclcpp::ParameterType::PARAMETER_STRING) return value.as_string();
-    throw std::invalid_argument(name + " is " + value.value_to_string() + ", no text");
-  }
-  double number(const std::string& name, const std::vector<rclcpp::Parameter>& changed) const {
-    const rclcpp::Parameter value = parameter(name, changed);
-    if (value.get_type() == rclcpp::ParameterType::PARAMETER_DOUBLE) return value.as_double();
-    if (value.get_type() == rclcpp::ParameterType::PARAMETER_INTEGER) return static_cast<double>(value.as_int());
-    throw std::invalid_argument(name + " is " + value.value_to_string() + ", no number");
-  }
-
-  rclcpp::Node& node_;
-  const std::string prefix_;
+  NodeParameters of_;
   rclcpp::node_interfaces::OnSetParametersCallbackHandle::SharedPtr guard_;
 };
 

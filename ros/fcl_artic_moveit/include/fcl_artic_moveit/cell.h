@@ -3,8 +3,10 @@
 
 #include <map>
 #include <memory>
+#include <ostream>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fcl_artic/manager.h>
@@ -20,6 +22,8 @@ struct BodyName {
   enum Kind { link, attached, object } kind = object;  ///< a link, an attached body, an object of the world
   std::string id;                                      ///< its name in MoveIt
 };
+/// As "link 'hand'".
+std::ostream& operator<<(std::ostream& out, const BodyName& body);
 
 /// How far the real robot and its scene may be from MoveIt's.
 struct CellTolerances {
@@ -27,6 +31,10 @@ struct CellTolerances {
   std::map<std::string, double> own;  ///< of single joints, in place of that: rad, or m for one that slides
   fcl_artic::PoseTolerance base;      ///< of the robot, about the origin of the model's frame
   double objects = 0;                 ///< m, of each object of the world, octomap included
+  /// m/s, by which each object of the world may move by itself while a trajectory with times lasts, octomap included:
+  /// each of its cells then may.
+  double object_speed = 0;
+  std::map<std::string, double> object_speeds;  ///< of single objects, if they are there, in place of that
 
   /// Whether one of them is above 0.
   bool any() const;
@@ -79,6 +87,8 @@ class Cell {
   const moveit::core::RobotModelConstPtr& model() const { return model_; }
   /// The body in MoveIt that a body of an answer stands for.
   const BodyName& nameOf(const fcl_artic::BodyRef& body) const { return names_.at(body.name).first; }
+  /// All bodies of the manager by their names there, with their padding, m.
+  const std::map<std::string, std::pair<BodyName, double>>& names() const { return names_; }
   /// The distance that two bodies of an answer have to keep because of the links' padding, m.
   double paddingBetween(const fcl_artic::BodyRef& a, const fcl_artic::BodyRef& b) const;
   /// The tolerances of the last update(), for people; empty: none.
