@@ -44,7 +44,7 @@ foreach(source IN LISTS sources)
     string(APPEND faults "  ${source}: ${first}\n")
   endif()
 endforeach()
-if(looked_at LESS 12)
+if(looked_at LESS 19)
   string(APPEND faults "  only ${looked_at} files were found\n")
 endif()
 

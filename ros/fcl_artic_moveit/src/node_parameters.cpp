@@ -96,7 +96,6 @@ std::map<std::string, double> NodeParameters::numbers(const std::string& name,
                                                       const std::vector<rclcpp::Parameter>& changed) const {
   const rclcpp::Parameter given = parameter(name, changed);
   std::map<std::string, double> out;
-  if (given.get_type() == rclcpp::ParameterType::PARAMETER_NOT_SET) return out;  // YAML's [] has no type
   if (given.get_type() != rclcpp::ParameterType::PARAMETER_STRING_ARRAY) {
     throw std::invalid_argument(name + " is " + given.value_to_string() + ", no list of NAME=NUMBER");
   }

@@ -87,6 +87,13 @@ TEST(ExecutionGuard, SaysUntilWhenItIsFree) {
   EXPECT_LE(reply.ahead.free_until, 2 - 0.25);
   EXPECT_NEAR(reply.ahead.run_until, 2 - 0.25 - 0.02 - 0.25 - 0.25, 2e-3);
   EXPECT_NEAR(reply.answer.stop_at, 0.02 + 0.04 + 0.25, 1e-6) << "reaction, period, stop";
+
+  // Twice as fast at first: a stop may take 2^2 / (2 x 2) m, and the rail is 1 m before its contact at 0.5 s.
+  run.trajectory = trajectoryOf(run.scene, {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}}, {0.5, 2});
+  run.guard.follow(run.scene, 0, run.trajectory);
+  const double free_until = run.guard.ask(0, 0, 0).ahead.free_until;
+  EXPECT_LE(free_until, 0.5);
+  EXPECT_NEAR(free_until, 0.5, 2e-3);
 }
 
 TEST(ExecutionGuard, StopsALongOneBeforeABoxThatAppears) {

@@ -58,19 +58,26 @@ inline std::string joint(const std::string& name, const std::string& type, const
          "'/><origin xyz='" + at + "' rpy='" + rpy + "'/>" + limit + more + "</joint>";
 }
 
+inline std::string sliderUrdf(const std::string& more = "") {
+  return "<robot name='slider'>" + boxLink("base", 0.1, 0.1, 0.1, "0 0 -1") + boxLink("cart", 0.2, 0.2, 0.2) +
+         boxLink("arm", 1, 0.1, 0.1, "0.5 0 0") + boxLink("finger", 0.1, 0.1, 0.1, "0.1 0 0") +
+         joint("rail", "prismatic", "base", "cart", "<axis xyz='1 0 0'/>") +
+         joint("turn", "revolute", "cart", "arm", "<axis xyz='0 0 1'/>") +
+         joint("reach", "prismatic", "arm", "finger", "<axis xyz='1 0 0'/>", "1 0 0") + more + "</robot>";
+}
+
+inline std::string sliderSrdf(const std::string& srdf = "<disable_collisions link1='cart' link2='arm'/>") {
+  return "<robot name='slider'><group name='all'><joint name='rail'/><joint name='turn'/><joint name='reach'/>"
+         "</group><group name='rail_only'><joint name='rail'/></group>"
+         "<group name='reach_only'><joint name='reach'/></group>" +
+         srdf + "</robot>";
+}
+
 /// A rail along x carries an arm that turns about z, which carries a finger at its end. The boxes of rail and arm
 /// overlap where they are joined; arm and finger do not touch. `srdf` is put into the SRDF.
 inline moveit::core::RobotModelConstPtr slider(
     const std::string& srdf = "<disable_collisions link1='cart' link2='arm'/>", const std::string& more = "") {
-  return modelOf("<robot name='slider'>" + boxLink("base", 0.1, 0.1, 0.1, "0 0 -1") + boxLink("cart", 0.2, 0.2, 0.2) +
-                     boxLink("arm", 1, 0.1, 0.1, "0.5 0 0") + boxLink("finger", 0.1, 0.1, 0.1, "0.1 0 0") +
-                     joint("rail", "prismatic", "base", "cart", "<axis xyz='1 0 0'/>") +
-                     joint("turn", "revolute", "cart", "arm", "<axis xyz='0 0 1'/>") +
-                     joint("reach", "prismatic", "arm", "finger", "<axis xyz='1 0 0'/>", "1 0 0") + more + "</robot>",
-                 "<robot name='slider'><group name='all'><joint name='rail'/><joint name='turn'/><joint name='reach'/>"
-                 "</group><group name='rail_only'><joint name='rail'/></group>"
-                 "<group name='reach_only'><joint name='reach'/></group>" +
-                     srdf + "</robot>");
+  return modelOf(sliderUrdf(more), sliderSrdf(srdf));
 }
 
 /// A robot in a world, checked by FCL as MoveIt does.
