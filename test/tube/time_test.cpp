@@ -15,13 +15,13 @@ namespace fcl_artic {
 namespace tube_test {
 namespace {
 
-/// A ball on a slide goes along z, from -1 to 1. Another one goes along x, from `late` - 1 to `late` + 1. Their middles
-/// come as near as |late| / sqrt(2).
+/// A ball on a slide goes along z through (1, 0, 0), from -1 to 1. Another one goes along x through the same point, as
+/// fast, and is `late` ahead. Their middles come as near as |late| / sqrt(2).
 struct Crossing {
   OneTurn cart{JointType::prismatic};
   std::shared_ptr<fcl::ContinuousCollisionObjectd> other;
   explicit Crossing(double late) {
-    const auto at = [&](double x) { return Eigen::Isometry3d(Eigen::Translation3d(late + x, 0, 0)); };
+    const auto at = [&](double x) { return Eigen::Isometry3d(Eigen::Translation3d(1 + late + x, 0, 0)); };
     other = std::make_shared<fcl::ContinuousCollisionObjectd>(std::make_shared<fcl::Sphered>(kRadius),
                                                               std::make_shared<fcl::TranslationMotiond>(at(-1), at(1)));
     cart.manager->registerObject(other, "other");
