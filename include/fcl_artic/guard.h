@@ -135,7 +135,8 @@ struct AheadAnswer {
 /// scene, with all tolerances, and against objects that move by themselves (ObjectSpeed). So if every answer is
 /// followed, the robot stands before anything can touch it, also if no further answer comes (doc/GUARD.md).
 ///
-/// After the first answers, ask() and lookAhead() allocate no memory. One thread at a time; LiveScene is for several.
+/// The memory of ask() and lookAhead() grows to what the largest question so far took, and stays: after the first
+/// answers they allocate none. One thread at a time; LiveScene is for several.
 class FCL_ARTIC_EXPORT Guard {
  public:
   /// @throws std::invalid_argument, naming the value: tree is null, another number of decelerations than tree->dof(), a

@@ -187,7 +187,7 @@ TEST(Allocation, AGuardsAnswersHaveTheirMemory) {
       const double at = 4 * static_cast<double>((n + 1000) * 7919 % 1000) / 1000;
       const double speed = static_cast<double>(n & 3) / 3;
       guard.ask(*live.latest(), 1e-4 * static_cast<double>(n & 63), at, speed, answer);
-      if (n % 16 == 0) guard.lookAhead(*live.latest(), 0, at, ahead);
+      if (n < 0 || n % 16 == 0) guard.lookAhead(*live.latest(), 0, at, ahead);
       full += answer.speed == 1;
       slow += answer.speed > 0 && answer.speed < 1;
       stop += answer.speed == 0;
