@@ -277,7 +277,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   const WorkspaceLoan workspace;
   setVariables(motion, setup.movingCoefficients(), context.time, workspace->coefficients, query);
   engine::Problem problem = setup.problem();
-  problem.strays = problem.strays && (context.stray_factor > 0 || setup.moves());
+  problem.strays = problem.strays && (context.stray_factor > 0 || setup.moves() || setup.lags());
   const BoundedParts parts(context.time, problem);
   (context.own_margins ? setup.margins() : setup.marginsOfNeighbours()).putInto(query.margins);
   restrictPairs(request, setup, problem, query.margins);

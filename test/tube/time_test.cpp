@@ -93,6 +93,24 @@ TEST(Time, IsForgottenStatedAndRefused) {
   EXPECT_TRUE(crossing.run(1, 1).isFree());
 }
 
+/// No factor makes obstacles less late: as with objects that move by themselves.
+TEST(Time, CountsInFullWhateverTheFactorOnTolerances) {
+  for (const bool late : {false, true}) {
+    Crossing crossing(0.5);
+    crossing.cart.manager->setJointTolerances({0, 1e-3});
+    crossing.cart.manager->setTimeTolerance(late ? 0.4 : 0.01);
+    crossing.cart.manager->setup();
+    const ToleranceLeft left = crossing.cart.manager->toleranceLeft(
+        JointMotion::linear(*crossing.cart.tree, VectorXd::Constant(1, -1), VectorXd::Constant(1, 1)), {});
+    EXPECT_TRUE(left.within_accuracy);
+    if (late) {
+      EXPECT_EQ(left.upper, 0) << "the motion itself is not free";
+    } else {
+      EXPECT_GT(left.lower, 1);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tube_test
 }  // namespace fcl_artic
