@@ -2,6 +2,8 @@
 //
 // Each footprint is drawn as its box of whole pixels. Sides and depth bounds are evaluated at the pixels' centres,
 // relative to the view's tile: the rasteriser snaps and interpolates nothing that counts.
+#include <algorithm>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
@@ -20,6 +22,10 @@ constexpr float kNothing = 3e38f;
   "struct Footprint { ivec4 box, info; vec4 sides[20], bounds[7]; };\n" \
   "layout(std430, binding = 0) readonly buffer Footprints { Footprint footprints[]; };\n"
 static_assert(sizeof(Footprint) == sizeof(float[4]) * (2 + 20 + 7), "as in the shaders");
+
+/// Each OpenGL 4.3 lets shaders read 2^24 bytes of a buffer (MAX_SHADER_STORAGE_BLOCK_SIZE). Beyond what a driver lets
+/// them read they may read anything, so no draw takes more footprints than that, three of each piece.
+constexpr std::size_t kMostFootprints = (std::size_t{1} << 24) / sizeof(Footprint) / kViews * kViews;
 
 constexpr const char* kVertex = FCL_ARTIC_FOOTPRINTS R"(
 flat out int index;
@@ -140,30 +146,38 @@ class GlExecutor : public Executor {
     gl.ClearBufferfv(GL_COLOR, 0, nothing);
     gl.Enable(GL_BLEND);
     gl.BlendEquation(GL_MIN);
-    drawFootprints(swept_program_, swept_);
+    drawFootprints(swept_program_, swept_.data(), swept_.size());  // eight volumes
     gl.Disable(GL_BLEND);
 
     gl.BindFramebuffer(GL_FRAMEBUFFER, targets_[1]);  // it takes no colour: pieces leave flags only
     gl.FramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_WIDTH, kViews * resolution);
     gl.FramebufferParameteri(GL_FRAMEBUFFER, GL_FRAMEBUFFER_DEFAULT_HEIGHT, resolution);
-    std::vector<std::uint32_t> flags(pieces_.size(), 0);
-    const auto bytes = static_cast<GLsizeiptr>(flags.size() * sizeof flags[0]);
-    gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, buffers_[1]);
-    gl.BufferData(GL_SHADER_STORAGE_BUFFER, bytes, flags.data(), GL_STREAM_READ);
-    drawFootprints(piece_program_, pieces_);
-    gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    flags.assign(flags.size(), 1);  // should nothing be read
-    gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, buffers_[1]);
-    gl.GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, bytes, flags.data());
+    std::vector<std::uint32_t> flags(pieces_.size(), 1);  // should nothing be read
+    for (std::size_t first = 0; first < pieces_.size(); first += kMostFootprints) {
+      drawPieces(first, std::min(kMostFootprints, pieces_.size() - first), flags.data() + first);
+    }
     if (const GLenum error = gl.GetError()) throw std::runtime_error("OpenGL error " + std::to_string(error));
     return flags;
   }
-  void drawFootprints(GLuint program, const std::vector<Footprint>& footprints) const {
+  /// Draws some of the pieces' footprints.
+  /// @param[out] flags  of these.
+  void drawPieces(std::size_t first, std::size_t count, std::uint32_t* flags) const {
+    const GlFunctions& gl = *gl_;
+    const std::vector<std::uint32_t> none(count, 0);
+    const auto bytes = static_cast<GLsizeiptr>(count * sizeof flags[0]);
+    gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, buffers_[1]);
+    gl.BufferData(GL_SHADER_STORAGE_BUFFER, bytes, none.data(), GL_STREAM_READ);
+    drawFootprints(piece_program_, pieces_.data() + first, count);
+    gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, buffers_[1]);
+    gl.GetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, bytes, flags);
+  }
+  void drawFootprints(GLuint program, const Footprint* footprints, std::size_t count) const {
     gl_->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffers_[0]);
-    gl_->BufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(footprints.size() * sizeof(Footprint)),
-                    footprints.data(), GL_STREAM_DRAW);
+    gl_->BufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(count * sizeof(Footprint)), footprints,
+                    GL_STREAM_DRAW);
     gl_->UseProgram(program);
-    gl_->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(footprints.size()));
+    gl_->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(count));
   }
 
   std::unique_ptr<OffscreenContext> context_;  // with it all of its objects go

@@ -169,6 +169,21 @@ TEST_P(AnyExecutor, WindowWithoutVolumeMayOverlap) {
   }
 }
 
+/// More than OpenGL draws at once: every 997th touches.
+TEST_P(AnyExecutor, EachOfVeryManyPiecesCounts) {
+  drawing_.pieces.clear();
+  drawing_.num_groups = 30000;
+  const auto touches = [](int group) { return group % 997 == 0; };
+  for (int group = 0; group < drawing_.num_groups; ++group) {
+    const double x = touches(group) ? 0.3 : 0.8;
+    drawing_.pieces.push_back({test::Adversary::addVolume({{x, 0.3, 0.3}}, 0.05, drawing_), group});
+  }
+  std::vector<std::uint8_t> may;
+  executor_->draw(drawing_, may);
+  for (int group = 0; group < drawing_.num_groups; ++group)
+    ASSERT_EQ(may[static_cast<std::size_t>(group)] != 0, touches(group)) << group;
+}
+
 /// Inside a closed surface nothing touches; inside a solid everything does.
 TEST_P(AnyExecutor, EdgeCases) {
   drawing_.pieces[0].volume.count = 0;
