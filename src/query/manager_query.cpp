@@ -263,7 +263,7 @@ void ArticulatedCollisionManager::collideMotion(const JointMotion& motion, const
   }
   engine::Query query = makeQuery(request);
   query.check_scene = request.check_scene;
-  query.tube = {context.stray_factor, context.clock, (1 + 0x1p-50) / context.duration};
+  query.tube = {context.stray_factor, context.clock, setup.lags() ? (1 + 0x1p-50) / context.duration : 0};
   if (context.limit) {
     query.max_contacts = 1;
     query.describe_contacts = false;

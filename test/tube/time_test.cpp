@@ -111,6 +111,31 @@ TEST(Time, CountsInFullWhateverTheFactorOnTolerances) {
   }
 }
 
+/// Where times underflow, an obstacle is late all the same. It leaves the cart's way, and is there if it has not left.
+TEST(Time, OfAnySizeCounts) {
+  const auto at = [](double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); };
+  for (const double duration : {5e-324, 1e-310, 1e-300, 1.0, 1e300}) {
+    OneTurn cart(JointType::prismatic);
+    const auto other = std::make_shared<fcl::ContinuousCollisionObjectd>(
+        std::make_shared<fcl::Sphered>(kRadius), std::make_shared<fcl::TranslationMotiond>(at(1), at(1.3)));
+    cart.manager->registerObject(other, "other");
+    const auto pass = [&] {
+      cart.manager->setup();
+      CertifiedResult result;
+      const std::vector<VectorXd> way = {VectorXd::Constant(1, -1), VectorXd::Constant(1, 1)};
+      cart.manager->continuousCollide(JointTrajectory::linear(*cart.tree, {0, duration}, way), {}, result);
+      return result;
+    };
+    EXPECT_TRUE(pass().isFree()) << duration;
+    cart.manager->setTimeTolerance(duration);
+    EXPECT_FALSE(pass().isFree()) << duration;
+    // Where nobody is late, times are none of the tolerances' business.
+    cart.manager->setTimeTolerance(0);
+    cart.manager->setJointTolerances({0, 1e-3});
+    EXPECT_TRUE(pass().isFree()) << duration;
+  }
+}
+
 }  // namespace
 }  // namespace tube_test
 }  // namespace fcl_artic
