@@ -105,6 +105,10 @@ Certificate makeCertificate(const World& world, const Claim& claim, std::uint64_
   if (!claim.pieces.front().self && !claim.pieces.front().scene) {
     certificate.missing = "nothing is claimed: neither links nor obstacles are checked";
   }
+  if (!(claim.duration <= kLargestNumber)) {
+    certificate.missing =
+        "the motion takes longer than 2^40, in its unit of time: certificates state no larger numbers";
+  }
   if (!certificate.missing.empty()) return certificate;
   if (!(claim.pieces.back().until > 0)) {
     certificate.missing =

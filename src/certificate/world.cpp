@@ -420,8 +420,12 @@ void Builder::write() {
     if (tolerance.any() && names.count(name)) text += "tolerance body " + word(name) + toleranceText(tolerance);
   }
   for (const auto& [name, of] : speeds_) {
-    if (of.speed > 0 && names.count(name))
-      text += "tolerance speed " + word(name) + " " + numberText(of.speed) + " " + numberText(of.since) + "\n";
+    if (!(of.speed > 0 && names.count(name))) continue;
+    if (of.speed > kLargestNumber || std::abs(of.since) > kLargestNumber) {
+      world.missing = "the speed of '" + name + "', or the time from which on it moves, is beyond 2^40";
+      return;
+    }
+    text += "tolerance speed " + word(name) + " " + numberText(of.speed) + " " + numberText(of.since) + "\n";
   }
   for (Body& body : world.bodies) {
     const auto own = of_object_.find(body.name);

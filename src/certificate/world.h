@@ -108,6 +108,8 @@ World makeWorld(const ShapeTree& shape1, const BodyMotion& motion1, const ShapeT
 
 /// A number as statements have it: C's hexadecimal floating-point constant.
 std::string numberText(double x);
+/// Verifiers refuse larger numbers (doc/CERTIFICATES.md, "The verifier's arithmetic").
+constexpr double kLargestNumber = 0x1p40;
 /// The nine numbers of a rotation by rows, words separated by spaces.
 std::string rotationText(const Eigen::Matrix3d& R);
 

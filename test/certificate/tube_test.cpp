@@ -194,6 +194,19 @@ TEST(CertificateTube, SpeedsAreStatedWithTheirClock) {
   EXPECT_NE(verdict.reason.find("about another motion"), std::string::npos) << verdict.reason;
 }
 
+TEST(CertificateTube, NumbersThatNoVerifierReadsAreNotStated) {
+  EveryJoint every;
+  every.tolerances = {};
+  for (const ObjectSpeed& speed : {ObjectSpeed{0.25, 1e13}, {0x1.1p40, 2}, {0.25, -1e300}}) {
+    every.tolerances.speeds["post"] = speed;
+    const Certificate none = certify(certificate::makeWorld(*every.registry, every.tolerances), every.motion());
+    EXPECT_FALSE(none);
+    EXPECT_NE(none.missing.find("'post'"), std::string::npos) << none.missing;
+  }
+  every.tolerances.speeds["post"] = {0.25, 0x1p40};
+  expectProven(certify(certificate::makeWorld(*every.registry, every.tolerances), every.motion()));
+}
+
 // Without tolerances, a world has the bytes that it had before there were any.
 TEST(CertificateTube, NoToleranceNoLine) {
   const EveryJoint every;
