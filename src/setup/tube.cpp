@@ -176,6 +176,7 @@ double NamedTolerances::lagOf(const std::string& object, const ShapeTree& shape,
     throw std::invalid_argument("setup(): nothing bounds the speed of obstacle '" + object +
                                 "', as setTimeTolerance() needs it");
   }
+  if (speed == 0) return 0;
   return of_time_ * speed * (1 + 0x1p-40) + std::numeric_limits<double>::min();  // the product may underflow
 }
 

@@ -88,6 +88,13 @@ TEST(Time, IsForgottenStatedAndRefused) {
   crossing.cart.manager->unregisterObject(crossing.other.get());
   crossing.cart.manager->setup();
   EXPECT_NO_THROW(crossing.cart.manager->continuousCollide(motion, certificate, result));
+  const Eigen::Isometry3d away(Eigen::Translation3d(9, 0, 0));
+  const auto stands = std::make_shared<fcl::ContinuousCollisionObjectd>(
+      std::make_shared<fcl::Sphered>(kRadius), std::make_shared<fcl::TranslationMotiond>(away, away));
+  crossing.cart.manager->registerObject(stands, "stands");
+  crossing.cart.manager->setup();
+  EXPECT_NO_THROW(crossing.cart.manager->continuousCollide(motion, certificate, result));
+  crossing.cart.manager->unregisterObject(stands.get());
   crossing.cart.manager->registerObject(crossing.other, "other");
   crossing.cart.manager->resetTolerances();
   EXPECT_TRUE(crossing.run(1, 1).isFree());
