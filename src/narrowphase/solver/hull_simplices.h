@@ -15,12 +15,12 @@ class HullSimplices {
  public:
   /// A new query: none is known.
   void begin() { ++query_; }
-  /// That of a pair in this query, or of a node of its body A; empty at first.
-  Simplex& of(PairId pair, std::int32_t node_a) {
-    Kept& kept = kept_[(engine::indexOf(pair) + static_cast<std::size_t>(node_a)) & (kKept - 1)];
-    if (kept.pair != pair || kept.node_a != node_a || kept.query != query_) {
+  /// That of a pair in this query, or of a node of its large body; empty at first.
+  Simplex& of(PairId pair, std::int32_t node) {
+    Kept& kept = kept_[(engine::indexOf(pair) + static_cast<std::size_t>(node)) & (kKept - 1)];
+    if (kept.pair != pair || kept.node != node || kept.query != query_) {
       kept.pair = pair;
-      kept.node_a = node_a;
+      kept.node = node;
       kept.query = query_;
       kept.simplex.n = 0;
     }
@@ -31,7 +31,7 @@ class HullSimplices {
   static constexpr int kKept = 32;
   struct Kept {
     PairId pair;
-    std::int32_t node_a;
+    std::int32_t node;
     std::uint64_t query;
     Simplex simplex;
   };

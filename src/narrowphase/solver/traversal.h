@@ -86,7 +86,7 @@ class Traversal : PartOfSolver {
     rods_throttle_.begin();
     roots_tested_ = -1;
   }
-  Simplex& simplexOf(const Entry& e) { return simplices_.of(e.pair, e.a); }
+  Simplex& simplexOf(const Entry& e) { return simplices_.of(e.pair, e.a != 0 ? e.a : e.b); }
 
   /// Lanes of `mask` in which two nodes' boxes are not certainly apart.
   unsigned nodesMayTouch(Seen seen, int a, int b, unsigned mask);
