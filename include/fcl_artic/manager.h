@@ -251,8 +251,9 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   void setObjectSpeed(const std::string& name, const ObjectSpeed& speed);
   /// Sets how much earlier or later than the motion says the robot may be, against obstacles that have a motion of
   /// their own: `free` then holds for every shift of their time by up to that much. Before its motion begins, and after
-  /// it ends, an obstacle stands. Needs setup(), which throws std::invalid_argument if nothing bounds an obstacle's
-  /// speed. Certificates do not state it: a request for one throws std::invalid_argument.
+  /// it ends, an obstacle stands. An object with a speed (ObjectSpeed) has as much longer to move. Needs setup(), which
+  /// throws std::invalid_argument if nothing bounds an obstacle's speed. Certificates do not state it: a request for
+  /// one throws std::invalid_argument.
   /// @param time  in the unit of the motion's time, s for most trajectories; a JointMotion takes 1. Finite, at least 0.
   /// @throws std::invalid_argument: a number that is negative or not finite.
   void setTimeTolerance(double time);

@@ -614,7 +614,8 @@ void bindChanges(py::class_<World>& world) {
           },
           "Sets how much earlier or later than the motion says the robot may be, against obstacles with a motion of "
           "their\n"
-          "own (add_moving()): s for a trajectory in seconds; a motion without times takes 1.",
+          "own (add_moving()): s for a trajectory in seconds; a motion without times takes 1.\n"
+          "Objects with a speed have as much longer to move.",
           py::arg("time"))
       .def(
           "reset_tolerances",

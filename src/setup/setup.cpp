@@ -2,6 +2,7 @@
 #include "setup/setup.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/solid_space.h"
 #include "numerics/constants.h"
@@ -61,13 +62,16 @@ void Setup::setStrays(const Registry& registry) {
     largest.lag = std::max(largest.lag, bodies_[i].lag);
     const ObjectSpeed speed = body.empty() ? ObjectSpeed() : tolerances.speedOf(body.name);
     bodies_[i].speed = speed.speed;
-    bodies_[i].since = speed.since;
+    // Beside a robot that is late it has moved for longer.
+    const double since = bodies_[i].since =
+        tolerances.ofTime() > 0 ? std::nextafter(speed.since - tolerances.ofTime(), -HUGE_VAL) : speed.since;
     if (!(speed.speed > 0)) continue;
-    largest.earliest_since = strays_.moves ? std::min(largest.earliest_since, speed.since) : speed.since;
+    largest.earliest_since = strays_.moves ? std::min(largest.earliest_since, since) : since;
     largest.speed = std::max(largest.speed, speed.speed);
     strays_.moves = true;
   }
   strays_.any = tolerances.any() || largest.lag > 0;
+  strays_.lags = largest.lag > 0 || (strays_.moves && tolerances.ofTime() > 0);
   for (engine::LinkPair& pair : link_pairs_) pair.stray = strays_.any ? strayOf(pair) : 0;
 }
 

@@ -68,8 +68,8 @@ class Setup {
   const std::vector<JointTolerance>& jointTolerances() const { return strays_.of_robot.of_joint; }
   /// Whether the robot or an obstacle strays.
   bool strays() const { return strays_.any; }
-  /// Whether an obstacle with a motion may be earlier or later.
-  bool lags() const { return strays_.largest.lag > 0; }
+  /// Whether an obstacle with a motion, or with a speed, may be earlier or later.
+  bool lags() const { return strays_.lags; }
   /// Whether an object moves by itself (ObjectSpeed).
   bool moves() const { return strays_.moves; }
   const LinkTables& tables() const { return *tables_; }
@@ -116,7 +116,7 @@ class Setup {
     TreeStrays of_robot;
     engine::BaseStray base;
     engine::LargestStrays largest;
-    bool any = false, moves = false;
+    bool any = false, moves = false, lags = false;
   };
   Strays strays_;
   PairMargins margins_, margins_of_neighbours_;

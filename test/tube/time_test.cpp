@@ -143,6 +143,30 @@ TEST(Time, OfAnySizeCounts) {
   }
 }
 
+/// An object with a speed has moved for longer if the robot is late, whether it has a motion or not.
+TEST(Time, ObjectsWithASpeedHaveLongerToMove) {
+  for (const bool moving : {true, false}) {
+    OneTurn cart(JointType::prismatic);
+    const auto body = std::make_shared<fcl::Sphered>(kRadius);
+    const Eigen::Isometry3d at = pose({1.7, 0, 0}), there = pose({1.7, 1e-6, 0});
+    if (moving) {
+      cart.manager->registerObject(
+          std::make_shared<fcl::ContinuousCollisionObjectd>(body, std::make_shared<fcl::TranslationMotiond>(at, there)),
+          "person");
+    } else {
+      cart.manager->registerObject(object(body, at), "person");
+    }
+    cart.manager->setObjectSpeed("person", {1, 0});
+    for (const double time : {0.0, 0.05, 0.2}) {  // at 0.63 both are 0.74 apart, and the person has come 0.63 nearer
+      cart.manager->setTimeTolerance(time);
+      EXPECT_EQ(cart.turn(-1, 1).isFree(), time < 0.1) << time << " " << moving;
+    }
+    CertifiedRequest certificate;
+    certificate.certificate = true;
+    EXPECT_THROW(ask(*cart.manager, VectorXd::Constant(1, -1), VectorXd::Zero(1), certificate), std::invalid_argument);
+  }
+}
+
 }  // namespace
 }  // namespace tube_test
 }  // namespace fcl_artic

@@ -38,7 +38,7 @@ class Strays : PartOfSolver {
   double largest() const {
     if (!any()) return 0;
     return factor() * problem().largest.stray + wayOf(problem().largest.speed, problem().largest.earliest_since, 1) +
-           query().tube.times * problem().largest.lag;
+           lagOf(problem().largest.lag);
   }
 
  private:
@@ -82,9 +82,11 @@ class Strays : PartOfSolver {
   double ofBase(const Body& link);
   /// How far something comes by itself until t.
   double wayOf(double speed, double since, double t) const;
+  /// How far something is by being early or late. (`times` is infinite for the shortest trajectories.)
+  double lagOf(double lag) const { return lag > 0 ? query().tube.times * lag : 0; }
   /// How far a body strays by itself until t: its pose's tolerance, its own way, and its motion's being early or late.
   double ofBody(const Body& body, double t) const {
-    return factor() * body.stray + wayOf(body.speed, body.since, t) + query().tube.times * body.lag;
+    return factor() * body.stray + wayOf(body.speed, body.since, t) + lagOf(body.lag);
   }
   /// Sums over the steps up to one, of the world's sweep.
   struct Form {
