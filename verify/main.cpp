@@ -357,7 +357,7 @@ class Run {
       subject.scene = "among the obstacles of " + files(asked_.scenes);
     else if (obstacles > 0)
       subject.scene = "among this world's obstacles (" + std::to_string(obstacles) + ")";
-    subject.covered = verify::coveredBy(world_);
+    subject.covered = verify::coveredBy(world_) + verify::timeTaken(world_, motion);
     if (!motion.self) subject.pairs = "pairs of the robot and an obstacle";
     const auto isMargin = [](const auto& margin) { return margin.second > 0; };
     if (motion.margin > 0 || motion.added > 0 || std::any_of(world_.margins.begin(), world_.margins.end(), isMargin) ||

@@ -126,6 +126,10 @@ std::string counted(std::size_t n, const std::string& one, const std::string& ma
   return std::to_string(n) + " " + (n == 1 ? one : many.empty() ? one + "s" : many);
 }
 
+std::string timeTaken(const World& world, const Motion& motion) {
+  return world.speeds.empty() ? "" : "in at most " + shortest(motion.pieces.back().clock[1]) + " s, ";
+}
+
 std::vector<std::string> linesOf(const World& world) {
   std::vector<std::string> lines;
   for (const Role role : {Role::link, Role::carried, Role::obstacle}) {

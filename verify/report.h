@@ -19,6 +19,8 @@ std::vector<std::string> linesOf(const World& world);
 /// Which paths and poses a claim covers beside those stated, as words before "none of 3 pairs": "for every path within
 /// 0.3 deg of it, base 'foot' within 2 mm and 0.1 deg, ". Empty: no others.
 std::string coveredBy(const World& world);
+/// How long bodies have to move by themselves, as "in at most 2 s, "; empty: none does.
+std::string timeTaken(const World& world, const Motion& motion);
 /// The statements of the motion: what is checked, margin, start and goal, pairs that are ignored up to a time.
 std::vector<std::string> linesOf(const World& world, const Motion& motion, const Verdict& verdict);
 /// Whether a verified claim leaves something out that files do not: it ends early, or the motion itself leaves out a
