@@ -58,7 +58,9 @@ std::vector<Carrier> Setup::buildLinks(const Registry& registry) {
     engine::Body& body = bodies_[i];
     const Carrier carrier = carriers[i] = sweeps_[0].carrier(link.link);
     const Eigen::Isometry3d in_step = carrier.offset * link.offset;
-    body.tree = link.attached ? &link.shape->viewWithUpperNodes() : &link.shape->viewWithParts();
+    // Stage 1 goes into what is large among objects; links are cut into parts.
+    const bool entered = link.attached && link.shape->viewWithUpperNodes().upper;
+    body.tree = entered ? &link.shape->viewWithUpperNodes() : &link.shape->viewWithParts();
     body.balls = link.shape->innerBalls();
     body.step = carrier.step;
     body.placement = makePlacement(carrier, link.offset);
