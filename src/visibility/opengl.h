@@ -42,7 +42,7 @@ struct GlFunctions {
   X(Scissor) X(ShaderSource) X(TexImage2D) X(TexParameteri) X(Uniform1f) X(Uniform1i) X(Uniform2f) X(Uniform3fv)      \
   X(UniformMatrix4fv) X(UseProgram) X(VertexAttribPointer) X(Viewport)
 // clang-format on
-#define FCL_ARTIC_GL_DECLARE(name) decltype(&::gl##name) name = nullptr;
+#define FCL_ARTIC_GL_DECLARE(name) decltype(&::gl##name) name = nullptr;  // NOLINT: a member's name
   FCL_ARTIC_GL_FUNCTIONS(FCL_ARTIC_GL_DECLARE)
 #undef FCL_ARTIC_GL_DECLARE
 

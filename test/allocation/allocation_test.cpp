@@ -159,7 +159,9 @@ long answersWanted() {
 TEST(Allocation, AGuardsAnswersHaveTheirMemory) {
   Arm arm;
   std::vector<Vector3d> points;
-  for (int i = 0; i < 2000; ++i) points.emplace_back(0.2 + 0.001 * (i % 100), -0.8, 0.01 * (i / 100));
+  for (int row = 0; row < 20; ++row) {
+    for (int k = 0; k < 100; ++k) points.emplace_back(0.2 + 0.001 * k, -0.8, 0.01 * row);
+  }
   arm.manager->registerObject(object(std::make_shared<PointCloud>(points, 0.01), Vector3d::Zero()), "cloud");
   const std::string person = "a person whose name is longer than a short string";
   arm.manager->registerObject(object(std::make_shared<fcl::Sphered>(0.2), {1.6, 1.2, 0}), person);
