@@ -40,8 +40,8 @@ void addAll(const ::ompl::base::SpaceInformationPtr& si, const std::vector<std::
   }
 }
 
-void addWorld(World world, const ::ompl::base::StateSpacePtr& space, const std::vector<std::vector<double>>& states,
-              Said& said) {
+void addWorld(const World& world, const ::ompl::base::StateSpacePtr& space,
+              const std::vector<std::vector<double>>& states, Said& said) {
   for (const bool ignore : {false, true}) {
     CertifiedRequest request = planningRequest();
     request.ignore_initial_contact = ignore;

@@ -29,17 +29,17 @@ struct Changed : visibility::Executor {
 };
 /// A culler with that executor, whose self-test is done: nothing of it reaches the functions.
 inline std::shared_ptr<const VisibilityCuller> changedBy(
-    std::function<void(visibility::Drawing& drawing)> before,
-    std::function<void(std::vector<std::uint8_t>& may)> after = nullptr) {
+    const std::function<void(visibility::Drawing& drawing)>& before,
+    const std::function<void(std::vector<std::uint8_t>& may)>& after = nullptr) {
   auto tested = std::make_shared<bool>(false);
-  const auto culler = std::make_shared<VisibilityCuller>(VisibilityOptions(), "changed", [=] {
+  const auto culler = std::make_shared<VisibilityCuller>(VisibilityOptions(), "changed", [before, after, tested] {
     auto executor = std::make_unique<Changed>();
     if (before)
-      executor->before = [=](visibility::Drawing& drawing) {
+      executor->before = [before, tested](visibility::Drawing& drawing) {
         if (*tested) before(drawing);
       };
     if (after)
-      executor->after = [=](std::vector<std::uint8_t>& may) {
+      executor->after = [after, tested](std::vector<std::uint8_t>& may) {
         if (*tested) after(may);
       };
     return executor;
