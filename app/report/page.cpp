@@ -18,6 +18,7 @@
 #endif
 
 #include "fcl_artic/point_cloud.h"
+#include "numerics/rotation.h"
 #include "page_parts.h"
 #include "render/triangles.h"
 #include "text/xml.h"
@@ -260,7 +261,7 @@ Json witnessesJson(const Report& report, const std::vector<PageBody>& bodies, Sh
       const PageBody& body = bodies[i];
       const bool first = body.name == c.body1.name, second = body.name == c.body2.name;
       const Isometry3d& own = first ? c.deviation1 : c.deviation2;
-      const bool off = (first || second) && own.matrix() != Eigen::Matrix4d::Identity();
+      const bool off = (first || second) && !isIdentity(own);
       if (body.link < 0 && !off) continue;
       Isometry3d pose = body.link >= 0 ? c.base_deviation * M_0[static_cast<std::size_t>(body.link)] * body.pose
                         : body.motion  ? body.motion(c.t_upper)

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "kinematics/angles.h"
+#include "numerics/rotation.h"
 #include "request_json.h"
 #include "stage2.h"
 #include "text/counted.h"
@@ -194,15 +195,11 @@ Json poseJson(const Eigen::Isometry3d& M) {
           {"quaternion_xyzw", {rotation.x(), rotation.y(), rotation.z(), rotation.w()}}};
 }
 
-bool isInPlace(const Eigen::Isometry3d& deviation) {
-  return deviation.matrix() == Eigen::Matrix4d::Identity();
-}
-
 /// Adds the configuration and the deviations, each null where there is none.
 void addWitness(const KinematicTree& tree, const ToleranceWitness& witness, Json& out) {
   out["q_witness"] = witness.q_witness.size() > 0 ? valuesJson(tree, witness.q_witness) : Json();
   const auto add = [&](const char* key, const Eigen::Isometry3d& deviation) {
-    out[key] = isInPlace(deviation) ? Json() : poseJson(deviation);
+    out[key] = isIdentity(deviation) ? Json() : poseJson(deviation);
   };
   add("base_deviation", witness.base_deviation);
   add("deviation1", witness.deviation1);
@@ -221,7 +218,7 @@ Json toleranceLeftJson(const KinematicTree& tree, const ToleranceLeft& left) {
 std::string witnessText(const KinematicTree& tree, const CertifiedContact& c) {
   std::string text = fmt::format("within the tolerances, at t = {:.12g}: {}", c.t_upper, jointsText(tree, c.q_witness));
   const auto add = [&](const std::string& who, const Eigen::Isometry3d& deviation) {
-    if (isInPlace(deviation)) return;
+    if (isIdentity(deviation)) return;
     const double angle = Eigen::AngleAxisd(deviation.linear()).angle() / kRadiansPerDegree;
     text += fmt::format("; {} is off by {} m", who, placeText(deviation.translation(), 6));
     if (angle > 0) text += fmt::format(" and {:.6g} deg", angle);
