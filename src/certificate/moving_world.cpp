@@ -7,7 +7,7 @@
 
 #include "numerics/baseline_isa.h"
 
-#include "convex/piece_kinds.h"
+#include "convex/cloud.h"
 
 namespace fcl_artic::certificate {
 namespace {
@@ -288,13 +288,16 @@ double largestDistance(const Geometry& geometry, std::int32_t node, const Vector
   while (open > 0) {
     const Open next = stack[--open];
     if (next.upper <= most) continue;
-    const engine::Node& n = tree.nodes[next.node];
+    baseline::NodeRoom room, room_left, room_right;
+    const engine::Node& n = baseline::nodeOf(tree, next.node, room);
     if (n.isLeaf()) {
-      forEachEnd(tree, tree.pieces[n.piece()],
+      baseline::PieceRoom piece;
+      forEachEnd(tree, baseline::pieceOf(tree, n.piece(), piece),
                  [&](const Vector3d& x, double radius) { most = std::max(most, distance(x) + radius); });
       continue;
     }
-    Open left = {n.left(), upper(tree.nodes[n.left()])}, right = {n.right(), upper(tree.nodes[n.right()])};
+    Open left = {n.left(), upper(baseline::nodeOf(tree, n.left(), room_left))},
+         right = {n.right(), upper(baseline::nodeOf(tree, n.right(), room_right))};
     if (left.upper > right.upper) std::swap(left, right);
     stack[open++] = left;
     stack[open++] = right;
@@ -328,9 +331,11 @@ Vector3d farthest(const Geometry& geometry, std::int32_t node, const Vector3d& u
   while (open > 0) {
     const Open next = stack[--open];
     if (next.upper <= most) continue;
-    const engine::Node& n = tree.nodes[next.node];
+    baseline::NodeRoom room, room_left, room_right;
+    const engine::Node& n = baseline::nodeOf(tree, next.node, room);
     if (n.isLeaf()) {
-      const Vec3 p = farthestOfPiece(tree, tree.pieces[n.piece()], d, length);
+      baseline::PieceRoom piece;
+      const Vec3 p = farthestOfPiece(tree, baseline::pieceOf(tree, n.piece(), piece), d, length);
       const double value = dot(d, p);
       if (value > most) {
         most = value;
@@ -338,7 +343,8 @@ Vector3d farthest(const Geometry& geometry, std::int32_t node, const Vector3d& u
       }
       continue;
     }
-    Open left = {n.left(), upper(tree.nodes[n.left()])}, right = {n.right(), upper(tree.nodes[n.right()])};
+    Open left = {n.left(), upper(baseline::nodeOf(tree, n.left(), room_left))},
+         right = {n.right(), upper(baseline::nodeOf(tree, n.right(), room_right))};
     if (left.upper > right.upper) std::swap(left, right);
     stack[open++] = left;
     stack[open++] = right;

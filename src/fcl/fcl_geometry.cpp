@@ -25,8 +25,11 @@
 #include "fcl/mesh_cache.h"
 #include "fcl_artic/point_cloud.h"
 #include "fcl_artic/solid_mesh.h"
+#include "numerics/baseline_isa.h"
 #include "numerics/rotation.h"
 #include "numerics/shown.h"
+
+#include "convex/cloud.h"
 
 namespace fcl_artic {
 
@@ -480,19 +483,25 @@ namespace {
 bool isOfBalls(const engine::TreeView& tree, const PointCloud& cloud) {
   const std::vector<Eigen::Vector3d>& points = cloud.points();
   if (points.size() != static_cast<std::size_t>(tree.num_pieces)) return false;
-  return std::all_of(tree.pieces, tree.pieces + tree.num_pieces, [&](const Piece& ball) {
-    const auto i = static_cast<std::size_t>(ball.primitive);
-    const double radius = cloud.radius(i);
-    return std::equal(ball.center, ball.center + 3, points[i].data()) && radius == ball.radius;
-  });
+  for (std::int32_t i = 0; i < tree.num_pieces; ++i) {
+    baseline::PieceRoom room;
+    const Piece& ball = baseline::pieceOf(tree, i, room);
+    const auto number = static_cast<std::size_t>(ball.primitive);
+    if (!std::equal(ball.center, ball.center + 3, points[number].data())) return false;
+    if (cloud.radius(number) != ball.radius) return false;
+  }
+  return true;
 }
 
 bool haveSameBalls(const engine::TreeView& a, const engine::TreeView& b) {
-  return std::equal(a.pieces, a.pieces + a.num_pieces, b.pieces, b.pieces + b.num_pieces,
-                    [](const Piece& one, const Piece& other) {
-                      return one.primitive == other.primitive && one.radius == other.radius &&
-                             std::equal(one.center, one.center + 3, other.center);
-                    });
+  if (a.num_pieces != b.num_pieces) return false;
+  for (std::int32_t i = 0; i < a.num_pieces; ++i) {
+    baseline::PieceRoom room_a, room_b;
+    const Piece &one = baseline::pieceOf(a, i, room_a), &other = baseline::pieceOf(b, i, room_b);
+    if (one.primitive != other.primitive || one.radius != other.radius) return false;
+    if (!std::equal(one.center, one.center + 3, other.center)) return false;
+  }
+  return true;
 }
 
 }  // namespace

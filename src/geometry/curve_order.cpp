@@ -159,6 +159,13 @@ std::size_t CurveOrder::split(Range& range) {
   return with;
 }
 
+void CurveOrder::finish(Range range) {
+  if (range.size() <= 2 || places_[range.begin].key != places_[range.end - 1].key) return;
+  const std::size_t half = splitAtMiddle(range);
+  finish({range.begin, half, range.cells});
+  finish({half, range.end, range.cells});
+}
+
 /// Puts half of the range's points, those that come first along its longest axis, before the others.
 std::size_t CurveOrder::splitAtMiddle(Range range) {
   const std::size_t half = (range.begin + range.end) / 2;

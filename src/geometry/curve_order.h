@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 #include "geometry/large_array.h"
 
@@ -46,21 +45,17 @@ class CurveOrder {
   /// are, and once only, as this may put its points into another order. Two threads may split ranges that have no point
   /// in common.
   std::size_t split(Range& range);
+  /// Orders the points of a range that is split no further: so that its halves, theirs, and so on, are near each other
+  /// where split() would not tell them apart.
+  void finish(Range range);
   /// The number of the point in this place, which changes while a range that holds it is split.
   std::uint32_t number(std::size_t place) const { return places_[place].number; }
-  /// From now on numbers are places at this time: the points have been put there, in this order.
-  /// @param points  where the points lie by then. Before a range is split, takeNumber() must be called for its places.
-  void renumber(PointsAt points) { points_ = points; }
-  /// The number that a place had before renumber(); its number is the place from now on.
-  std::uint32_t takeNumber(std::size_t place) {
-    return std::exchange(places_[place].number, static_cast<std::uint32_t>(place));
-  }
 
  private:
   void layCells(Range range, int threads);
   std::size_t splitAtMiddle(Range range);
 
-  PointsAt points_;
+  const PointsAt points_;
   LargeArray<CurvePlace> places_;
 };
 

@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "geometry/curve_order.h"
-#include "geometry/node_boxes.h"
+#include "numerics/baseline_isa.h"
 #include "threads/parallel.h"
+
+#include "convex/node_boxes.h"
 
 namespace fcl_artic {
 
@@ -26,7 +28,7 @@ template <class Measure>
 class CurveBuilder {
  public:
   /// @param centers  of the pieces, by their numbers.
-  /// @param pieces  where they are, or where put() puts them.
+  /// @param pieces  where they are.
   /// @param nodes  2 a piece.
   CurveBuilder(PointsAt centers, std::size_t size, int threads, engine::Piece* pieces, engine::Node* nodes,
                Measure measure)
@@ -40,16 +42,9 @@ class CurveBuilder {
   }
   /// The tree over pieces that are where they belong.
   void build() {
-    buildParts([](const CurveOrder::Range&) {});
-  }
-  /// Puts pieces in the order of the curve, so that those near each other lie side by side, and builds the tree.
-  /// @param pieceOf  called as pieceOf(number), once for each piece, by several threads.
-  template <class PieceOf>
-  void put(const PieceOf& pieceOf) {
-    order_.renumber({pieces_[0].center, kPieceStride});
-    buildParts([&](const CurveOrder::Range& range) {
-      for (std::size_t i = range.begin; i < range.end; ++i) pieces_[i] = pieceOf(order_.takeNumber(i));
-    });
+    parallelFor(parts_.size(), threads_, [&](std::size_t i) { build(parts_[i]); });
+    for (std::size_t i = above_.size(); i-- > 0;) enclose(above_[i]);
+    nodes_[1] = nodes_[0];
   }
 
  private:
@@ -65,15 +60,6 @@ class CurveBuilder {
     const CurveOrder::Range left{at.range.begin, middle, at.range.cells}, right{middle, at.range.end, at.range.cells};
     return {{at.child, left, at.child + 2}, {at.child + 1, right, at.child + 2 * left.size()}};
   }
-  template <class Prepare>
-  void buildParts(const Prepare& prepare) {
-    parallelFor(parts_.size(), threads_, [&](std::size_t i) {
-      prepare(parts_[i].range);
-      build(parts_[i]);
-    });
-    for (std::size_t i = above_.size(); i-- > 0;) enclose(above_[i]);
-    nodes_[1] = nodes_[0];
-  }
   void divide(Below at, std::size_t part) {
     if (at.range.size() <= part) return parts_.push_back(at);
     above_.push_back(at);
@@ -84,7 +70,7 @@ class CurveBuilder {
   void build(Below at) {
     if (at.range.size() == 1) {
       const std::uint32_t piece = order_.number(at.range.begin);
-      nodes_[at.node] = makeLeaf(measure_(pieces_[piece]), static_cast<std::int32_t>(piece));
+      nodes_[at.node] = baseline::makeLeaf(measure_(pieces_[piece]), static_cast<std::int32_t>(piece));
       return;
     }
     const auto [left, right] = split(at);
@@ -95,7 +81,7 @@ class CurveBuilder {
   /// Makes a node of its children.
   void enclose(const Below& at) {
     engine::Node& node = nodes_[at.node];
-    fcl_artic::enclose(nodes_[at.child], nodes_[at.child + 1], node);
+    baseline::enclose(nodes_[at.child], nodes_[at.child + 1], node);
     node.child = static_cast<std::int32_t>(at.child);
   }
   const Measure measure_;

@@ -8,6 +8,7 @@
 #include "numerics/assertion.h"
 #include "numerics/baseline_isa.h"
 
+#include "convex/cloud.h"
 #include "convex/gjk.h"
 
 namespace fcl_artic {
@@ -49,7 +50,8 @@ double nearestOf(const baseline::Simplex& s) {
 }  // namespace
 
 bool Nearness::isNearPiece(std::int32_t index, const Eigen::Vector3d& x, double most) const {
-  const Piece& piece = tree_.pieces[index];
+  baseline::PieceRoom room;
+  const Piece& piece = baseline::pieceOf(tree_, index, room);
   if (piece.kind == PieceKind::vertices && piece.num_vertices == 3) {
     const MeshTriangle triangle = triangleOf(tree_, index);
     return (nearestPoint(triangle, x) - x).squaredNorm() <= most * most;
@@ -80,15 +82,20 @@ bool Nearness::isNear(const Eigen::Vector3d& x, double most, std::int32_t& last)
   std::int32_t open[kDeepest];
   std::size_t count = 0;
   const double square = most * most * (1 + 1e-12);
-  if (squareFrom(tree_.nodes[0], x) <= square) open[count++] = 0;
+  const auto squareTo = [&](int node) {
+    baseline::NodeRoom room;
+    return squareFrom(baseline::nodeOf(tree_, node, room), x);
+  };
+  if (squareTo(0) <= square) open[count++] = 0;
   while (count) {
-    const engine::Node& node = tree_.nodes[open[--count]];
+    baseline::NodeRoom room;
+    const engine::Node& node = baseline::nodeOf(tree_, open[--count], room);
     if (node.isLeaf()) {
       if (node.piece() == last || !isNearPiece(node.piece(), x, most)) continue;
       last = node.piece();
       return true;
     }
-    const double left = squareFrom(tree_.nodes[node.left()], x), right = squareFrom(tree_.nodes[node.right()], x);
+    const double left = squareTo(node.left()), right = squareTo(node.right());
     FCL_ARTIC_ASSERT(count + 2 <= kDeepest);
     const bool left_first = left < right;
     // The nearer one is looked at first.

@@ -13,19 +13,20 @@
 
 #include "geometry/closed_parts.h"
 #include "geometry/curve_tree.h"
-#include "geometry/node_boxes.h"
 #include "geometry/outer_hull.h"
 #include "geometry/solid_space.h"
 #include "geometry/wide_tree.h"
 #include "numerics/baseline_isa.h"
 
-#include "convex/piece_kinds.h"
+#include "convex/cloud.h"
 #include "numerics/assertion.h"
 #include "numerics/constants.h"
 
 namespace fcl_artic {
 namespace {
 
+using baseline::makeLeaf;
+using baseline::setRadius;
 using engine::Node;
 using engine::Piece;
 using engine::PieceKind;
@@ -272,21 +273,20 @@ std::shared_ptr<const ShapeTree> ShapeTree::fromPieces(const std::vector<Piece>&
 std::shared_ptr<const ShapeTree> ShapeTree::fromBalls(const std::vector<Eigen::Vector3d>& centers,
                                                       const std::vector<double>& radii, int threads) {
   FCL_ARTIC_ASSERT(!centers.empty() && (radii.size() == 1 || radii.size() == centers.size()));
-  const auto ball = [&](std::size_t i) {
-    Piece piece;
-    piece.kind = PieceKind::point;
-    piece.primitive = static_cast<std::int32_t>(i);
-    piece.radius = radii[radii.size() == 1 ? 0 : i];
-    std::copy_n(centers[i].data(), 3, piece.center);
-    return piece;
-  };
-  if (centers.size() == 1) return fromPiece(ball(0));
+  if (centers.size() == 1) {
+    Piece ball;
+    ball.kind = PieceKind::point;
+    ball.primitive = 0;
+    ball.radius = radii[0];
+    std::copy_n(centers[0].data(), 3, ball.center);
+    return fromPiece(ball);
+  }
   auto tree = std::make_shared<ShapeTree>(Private());
-  tree->pieces_ = LargeArray<Piece>(centers.size());
-  tree->nodes_ = LargeArray<Node>(2 * centers.size());
-  CurveBuilder({centers[0].data(), 3}, centers.size(), threads, tree->pieces_.data(), tree->nodes_.data(), measure)
-      .put(ball);
-  tree->show();
+  tree->cloud_ = buildCloudTree(centers, radii, threads);
+  tree->cloud_.show(tree->view_);
+  tree->outer_ = baseline::pieceOfBall(tree->view_, 0);
+  tree->view_.pieces = &tree->outer_;
+  tree->setExtent();
   return tree;
 }
 
@@ -315,6 +315,10 @@ void ShapeTree::show() {
   view_.vertices = vertices_.data();
   view_.hulls = hulls_.data();
   if (single) view_.outer = &outer_;
+  setExtent();
+}
+
+void ShapeTree::setExtent() {
   view_.extent = lower().cwiseAbs().cwiseMax(upper().cwiseAbs()).norm() * (1 + 1e-15);
 }
 
@@ -364,7 +368,8 @@ const SurfacePoints* ShapeTree::surfacePoints() const {
 }
 
 std::size_t ShapeTree::bytes() const {
-  return sizeof(*this) + nodes_.bytes() + pieces_.bytes() + vertices_.capacity() * sizeof(double) + hulls_.bytes();
+  return sizeof(*this) + nodes_.bytes() + pieces_.bytes() + cloud_.bytes() + vertices_.capacity() * sizeof(double) +
+         hulls_.bytes();
 }
 
 const LineSweptSphere& ShapeTree::lineSweptSphere() const {
@@ -378,7 +383,8 @@ LineSweptSphere ShapeTree::makeLineSweptSphere() const {
   double radius = 0;
   for (std::size_t i = 0; i + 2 < vertices_.size(); i += 3) points.push_back(Eigen::Vector3d::Map(&vertices_[i]));
   for (int i = 0; i < std::max(1, view_.num_pieces); ++i) {
-    const Piece& p = view_.pieces[i];
+    baseline::PieceRoom room;
+    const Piece& p = baseline::pieceOf(view_, i, room);
     if (baseline::unbounded(p)) throw std::invalid_argument("unbounded: no line swept sphere holds it");
     radius = std::max(radius, p.radius);
     if (p.kind == PieceKind::vertices) continue;  // added above

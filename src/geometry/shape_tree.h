@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "geometry/cloud_tree.h"
 #include "geometry/convex_parts.h"
 #include "geometry/inner_balls.h"
 #include "geometry/large_array.h"
@@ -86,12 +87,14 @@ class ShapeTree {
 
  private:
   void show();
+  void setExtent();
   LineSweptSphere makeLineSweptSphere() const;
   void makeOuter(const std::vector<Eigen::Vector3d>& points);
   engine::Node root_[2];  ///< a single piece's node: most shapes then need no memory but this object's
-  engine::Piece outer_;   ///< the piece around the whole; of a single piece, that piece
+  engine::Piece outer_;   ///< the piece around the whole; of a single piece, that piece; of a cloud, its first ball
   LargeArray<engine::Node> nodes_;
   LargeArray<engine::Piece> pieces_;
+  CloudTree cloud_;  ///< instead of both
   std::vector<double> vertices_;
   PackedHulls hulls_;
   engine::TreeView view_;
@@ -106,10 +109,8 @@ class ShapeTree {
   mutable std::unique_ptr<const SurfacePoints> points_;
 };
 
-/// Boxes to be put into a tree: the same builder serves pieces and obstacles.
-struct BoxBounds {
-  double lo[3], hi[3];
-};
+using engine::BoxBounds;
+
 /// Binary tree over boxes, node 0 the root; a leaf holds box ~left. Rounded outward. Empty for no boxes.
 std::vector<engine::Node> buildBoxTree(const std::vector<BoxBounds>& boxes);
 

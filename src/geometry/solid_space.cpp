@@ -11,7 +11,7 @@
 #include "geometry/shape_tree.h"
 #include "numerics/baseline_isa.h"
 
-#include "convex/piece_kinds.h"
+#include "convex/cloud.h"
 
 namespace fcl_artic {
 namespace {
@@ -145,7 +145,8 @@ SurfacePoints::SurfacePoints(const engine::TreeView& tree) {
     parts_.resize(static_cast<std::size_t>(tree.num_pieces));
     begun.assign(parts_.size(), false);
     for (std::size_t i = 0; i < parts_.size(); ++i) {
-      const Piece& piece = tree.pieces[i];
+      baseline::PieceRoom room;
+      const Piece& piece = baseline::pieceOf(tree, static_cast<int>(i), room);
       if (piece.kind == PieceKind::hull) {
         baseline::coverCore(tree, piece, [&](double x, double y, double z) { add(i, {x, y, z}); });
       } else {

@@ -52,12 +52,21 @@ engine::EightBoxes emptyBoxes() {
   return boxes;
 }
 
-/// The number of pieces below each node. (Children come after their parents.)
+/// Whether the tree stores no nodes below this one.
+bool isCluster(const engine::TreeView& tree, const Node& node) {
+  return node.child >= tree.num_nodes;
+}
+
+/// The number of pieces below each node that is stored. (Children come after their parents.)
 std::vector<std::int32_t> countPieces(const engine::TreeView& tree) {
   std::vector<std::int32_t> count(static_cast<std::size_t>(tree.num_nodes), 1);
   for (std::int32_t i = tree.num_nodes; i-- > 0;) {
     const Node& node = tree.nodes[i];
     if (i == 1 || node.isLeaf()) continue;
+    if (isCluster(tree, node)) {
+      count[static_cast<std::size_t>(i)] = tree.balls[(node.child - tree.num_nodes) / 2].cluster_size;
+      continue;
+    }
     count[static_cast<std::size_t>(i)] =
         count[static_cast<std::size_t>(node.left())] + count[static_cast<std::size_t>(node.right())];
   }
@@ -91,6 +100,7 @@ std::vector<engine::UpperNode> upperNodes(const engine::TreeView& tree) {
   const std::vector<std::int32_t> pieces = countPieces(tree);
   const float small = kSmallNode * tree.nodes[0].radius;
   const auto canDivide = [&](std::int32_t node) {
+    if (isCluster(tree, tree.nodes[node])) return false;
     const std::int32_t below = pieces[static_cast<std::size_t>(node)];
     return below > kFewPieces || (below > 1 && !(tree.nodes[node].radius < small));
   };

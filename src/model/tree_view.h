@@ -33,18 +33,40 @@ struct alignas(64) UpperNode {
   std::int32_t upper[8];  ///< the same as an upper node; -1: stage 1 goes no further
 };
 
+/// A ball of a cloud. Balls lie in the order of the tree's leaves. A *cluster* is up to kMaxClusterSize of them that
+/// lie side by side; the tree stores no nodes below it (convex/cloud.h).
+struct alignas(32) Ball {
+  double center[3];
+  std::int32_t number;         ///< of its point: the primitive id
+  std::uint16_t place;         ///< in its cluster: there are as many balls before it
+  std::uint16_t cluster_size;  ///< the number of balls
+};
+constexpr int kMaxClusterSize = 16;
+
 /// A body's geometry: constant, shared by threads. Node 0 is the root, node 1 is not used.
 struct TreeView {
   const Node* nodes = nullptr;
-  const Piece* pieces = nullptr;
+  const Piece* pieces = nullptr;               ///< of a cloud: the first one only
   const double* vertices = nullptr;            ///< xyz, packed
   const double* hulls = nullptr;               ///< see PieceKind; 64-byte aligned
   const Piece* outer = nullptr;                ///< one convex piece that holds the whole body; null: none worth having
   const Piece* parts = nullptr;                ///< convex pieces that hold what is below a node each
   const std::int16_t* part_of_node = nullptr;  ///< index into `parts`, -1: none; null: no node has one
   const UpperNode* upper = nullptr;            ///< of a large obstacle; null: stage 1 takes it as a whole
-  std::int32_t num_nodes = 0, num_pieces = 0;
+  const Ball* balls = nullptr;                 ///< of a cloud: as many as pieces; null: all pieces are stored
+  const double* ball_radii = nullptr;          ///< ball i's is at i * ball_radius_stride, which is 0 or 1
+  std::int32_t ball_radius_stride = 0;
+  std::int32_t num_nodes = 0;  ///< that are stored; of a cloud, nodes below clusters have numbers from here on
+  std::int32_t num_pieces = 0;
   double extent = 0;  ///< largest |p|, radii included: the size that pads scale with
+
+  /// One more than the largest number of a node.
+  std::int32_t endOfNodes() const { return num_nodes + (balls ? 2 * num_pieces : 0); }
+};
+
+/// A box by its ends.
+struct BoxBounds {
+  double lo[3], hi[3];
 };
 
 /// A box in a body's tree frame, grown by a ball, that holds the body: exact for boxes, balls and capsules.

@@ -11,6 +11,7 @@
 #include "numerics/assertion.h"
 #include "numerics/baseline_isa.h"
 
+#include "convex/cloud.h"
 #include "convex/contact_proof.h"
 
 namespace fcl_artic {
@@ -25,8 +26,9 @@ constexpr int kMaxIterations = 256;
 /// turns it by 1e-6 rad at most.
 constexpr double kSharp = 1e-10;
 
-const Piece* pieceOf(const Problem& problem, std::int32_t body, std::int32_t piece) {
-  return piece < 0 ? nullptr : problem.bodies[body].tree->pieces + piece;
+/// Null: the contact names none.
+const Piece* pieceOf(const Problem& problem, std::int32_t body, std::int32_t piece, baseline::PieceRoom& room) {
+  return piece < 0 ? nullptr : &baseline::pieceOf(*problem.bodies[body].tree, piece, room);
 }
 
 /// Removes contacts that are later than a proven one, and puts the others in order.
@@ -145,8 +147,9 @@ void EngineWorkspace::nameFeatures(const Problem& problem, const Query& query, L
                 static_cast<int>(FeatureKind::faceEdge) == kFaceEdge &&
                 static_cast<int>(FeatureKind::volume) == kVolume);
   if (contact.feature >= 0 || query.margins.of(contact.pair) > 0 || problem.strays) return;
-  const Piece *a = pieceOf(problem, contact.body_a, contact.piece_a),
-              *b = pieceOf(problem, contact.body_b, contact.piece_b);
+  baseline::PieceRoom room_a, room_b;
+  const Piece *a = pieceOf(problem, contact.body_a, contact.piece_a, room_a),
+              *b = pieceOf(problem, contact.body_b, contact.piece_b, room_b);
   if (!a || !b || a->num_vertices != 3 || b->num_vertices != 3) return;
   Vector3d p[3], q[3];
   for (int i = 0; i < 3; ++i) {
@@ -184,8 +187,9 @@ void EngineWorkspace::addWitness(const Problem& problem, const Query& query, Lea
   baseline::DifferenceBody body;
   body.pose.R = quadratic(baseline::Mat3(motion.R[0]), baseline::Mat3(motion.R[1]), baseline::Mat3(motion.R[2]));
   body.pose.c = quadratic(baseline::Vec3(motion.c[0]), baseline::Vec3(motion.c[1]), baseline::Vec3(motion.c[2]));
-  body.a = pieceOf(problem, contact.body_a, contact.piece_a);
-  body.b = pieceOf(problem, contact.body_b, contact.piece_b);
+  baseline::PieceRoom room_a, room_b;
+  body.a = pieceOf(problem, contact.body_a, contact.piece_a, room_a);
+  body.b = pieceOf(problem, contact.body_b, contact.piece_b, room_b);
   if (body.a && body.b) {
     body.tree_a = problem.bodies[contact.body_a].tree;
     body.tree_b = problem.bodies[contact.body_b].tree;

@@ -4,6 +4,9 @@
 #include <utility>
 
 #include "fcl/fcl_geometry.h"
+#include "numerics/baseline_isa.h"
+
+#include "convex/cloud.h"
 
 namespace fcl_artic {
 namespace {
@@ -13,7 +16,8 @@ namespace {
 /// @param geometry  that the tree was read from; null where FCL's double type is not at hand.
 std::intptr_t primitiveId(const fcl::CollisionGeometryd* geometry, const ShapeTree& shape, std::int32_t piece) {
   if (piece < 0) return fcl::Contactd::NONE;
-  const engine::Piece& p = shape.view().pieces[piece];
+  baseline::PieceRoom room;
+  const engine::Piece& p = baseline::pieceOf(shape.view(), piece, room);
 #if FCL_HAVE_OCTOMAP
   if (geometry && geometry->getNodeType() == fcl::GEOM_OCTREE) {
     return ocTreeCellId(static_cast<const fcl::OcTreed&>(*geometry), Eigen::Vector3d::Map(p.center));

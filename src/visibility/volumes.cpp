@@ -7,7 +7,7 @@
 
 #include "numerics/baseline_isa.h"
 
-#include "convex/piece_kinds.h"
+#include "convex/cloud.h"
 
 namespace fcl_artic {
 namespace visibility {
@@ -148,7 +148,8 @@ bool addPieces(const engine::TreeView& tree, std::int32_t root, const engine::Pl
   Bounds reached = reach;
   while (open) {
     const Open top = stack[--open];
-    const engine::Node& node = tree.nodes[top.node];
+    baseline::NodeRoom room;
+    const engine::Node& node = baseline::nodeOf(tree, top.node, room);
     const bool small = static_cast<double>(node.radius) < swept.least;
     if (!small && !node.isLeaf()) {
       const std::uint32_t met = placed.boundsOf(node).meet(swept.parts, top.lanes);
@@ -159,7 +160,9 @@ bool addPieces(const engine::TreeView& tree, std::int32_t root, const engine::Pl
       continue;
     }
     if (drawing.pieces.size() >= most) return addNothing();
-    const Volume volume = small ? placed.addBall(node, drawing) : placed.addPiece(tree.pieces[node.piece()], drawing);
+    baseline::PieceRoom piece;
+    const Volume volume =
+        small ? placed.addBall(node, drawing) : placed.addPiece(baseline::pieceOf(tree, node.piece(), piece), drawing);
     const double* points = drawing.points.data() + 3 * static_cast<std::ptrdiff_t>(volume.first);
     const Bounds bounds = boundsOf(points, volume.count, volume.radius);
     const std::uint32_t met = bounds.meet(swept.parts, top.lanes);

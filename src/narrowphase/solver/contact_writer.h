@@ -37,7 +37,8 @@ inline void ContactWriter::lookBack(Candidate& f) {
     step *= 4;
   }
   const Seen seen = motions_.of(f.entry.pair, poses);
-  const auto [a, b] = piecesOf(f, seen);
+  const PiecePair pieces = piecesOf(f, seen);
+  const Piece &a = pieces.a, &b = pieces.b;
   for (int k = 0; k < kLanes && !f.have_normal; ++k) {
     const DifferenceBody body = seen->differenceAt(a, b, k);
     GjkResult g;
@@ -91,7 +92,8 @@ inline void ContactWriter::record(Candidate& f) {
   contact.t = f.certain ? f.t_upper : f.t_lower;
   horizon_.joinLower(f.t_lower);
   const PairParts parts = problem().parts(f.entry.pair);
-  const Piece &a = body(parts.a).tree->pieces[f.piece_a], &b = body(parts.b).tree->pieces[f.piece_b];
+  const PiecePair pieces(*body(parts.a).tree, f.piece_a, *body(parts.b).tree, f.piece_b);
+  const Piece &a = pieces.a, &b = pieces.b;
   const bool wall = unbounded(a) || unbounded(b);
   if (f.certain && f.have_normal && !wall) {
     f.point.store(contact.point);
@@ -106,7 +108,8 @@ inline void ContactWriter::record(Candidate& f) {
   const Vec3 point = f.certain ? f.point : pointBetween(f, body);
   if (!f.have_normal) {
     // In contact from the start: the direction between the pieces' middles.
-    const Vec3 x = middleOf(seen->a().nodes[f.entry.a]), y = middleOf(seen->b().nodes[f.entry.b]);
+    NodeRoom room_a, room_b;
+    const Vec3 x = middleOf(nodeOf(seen->a(), f.entry.a, room_a)), y = middleOf(nodeOf(seen->b(), f.entry.b, room_b));
     f.normal = unitOrZ(body.place(y) - x);
   }
   point.store(contact.point);

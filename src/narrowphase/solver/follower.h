@@ -50,7 +50,9 @@ struct Candidate {
 /// for instance if the hull's vertices are not the body's own.
 /// @param below  the node to begin at.
 inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool in_a, int below = 0) {
-  if (tree.nodes[below].isLeaf()) return tree.nodes[below].piece();
+  NodeRoom room;
+  const Node& top = nodeOf(tree, below, room);
+  if (top.isLeaf()) return top.piece();
   if (tree.pieces[0].kind != PieceKind::vertices || simplex.n == 0) return -1;
   const auto point = [&](int k) { return in_a ? simplex.v[k].a : simplex.v[k].b; };
   int heaviest = 0;
@@ -92,7 +94,7 @@ inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool in_
 /// The pieces of a candidate.
 inline PiecePair piecesOf(const Candidate& f, Seen seen) {
   if (f.isHulls()) return {f.hull_a, *seen->b().outer};
-  return {seen->a().pieces[f.piece_a], seen->b().pieces[f.piece_b]};
+  return {seen->a(), f.piece_a, seen->b(), f.piece_b};
 }
 
 /// Lower bounds of the gap of two pieces over eight lanes: one along a direction that turns, or two along one that does
@@ -267,7 +269,8 @@ inline bool Follower::proveAhead(Candidate& f, Seen seen, int lane) {
   const int piece_b = f.isHulls() ? pieceAtWitness(B, f.simplex, false, f.entry.b) : f.piece_b;
   if (piece_a < 0 || piece_b < 0) return false;
   ++statistics().contact_proofs;
-  const DifferenceBody body = seen->differenceAt(A.pieces[piece_a], B.pieces[piece_b], lane);
+  const PiecePair pieces(A, piece_a, B, piece_b);
+  const DifferenceBody body = seen->differenceAt(pieces.a, pieces.b, lane);
   const double within = seen->touchMargin(*body.a, *body.b, f.normal, lane);
   if (!certainlyTouching(body, within, seen->poseError(), f.normal, f.point)) return false;
   const double t = seen->batch().at[lane];
@@ -301,7 +304,8 @@ inline bool Follower::prove(Candidate& f) {
   for (int k = 0; k < kLanes; ++k) poses.setPose(k, min(1.0, f.t_lower + kOffsets[k] * query().tolerance_time));
   const Seen seen = motions_.of(f.entry.pair, poses);
   f.pad = seen->pad();
-  const Piece &a = seen->a().pieces[f.piece_a], &b = seen->b().pieces[f.piece_b];
+  const PiecePair pieces(seen->a(), f.piece_a, seen->b(), f.piece_b);
+  const Piece &a = pieces.a, &b = pieces.b;
   const int head = f.have_normal ? 0 : kLanes - 1;  // never seen apart: in contact at t_lower itself
   for (int i = 0; i < kLanes; ++i) {
     const int k = (head + i) % kLanes;

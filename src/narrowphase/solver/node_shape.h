@@ -3,7 +3,7 @@
 // The box of a tree's node: its proportions, and as a piece.
 #pragma once
 
-#include "convex/piece_kinds.h"
+#include "convex/cloud.h"
 #include "narrowphase/solver/swept_box.h"
 #include "numerics/constants.h"
 
@@ -57,10 +57,11 @@ inline Piece boxOf(const Node& node) {
 /// body, the node's box.
 class NodeHull {
  public:
-  NodeHull(const TreeView& tree, int node) : piece_(pieceOf(tree, node)) {
-    if (piece_ || !exists(tree, node)) return;
-    box_ = boxOf(tree.nodes[node]);
-    piece_ = &box_;
+  NodeHull(const TreeView& tree, int node) : piece_(tree.outer) {
+    if (node == 0 || !exists(tree, node)) return;
+    NodeRoom room;
+    const Node& at = nodeOf(tree, node, room);
+    piece_ = at.isLeaf() ? &pieceOf(tree, at.piece(), room_) : &(room_.piece = boxOf(at));
   }
   NodeHull(const NodeHull&) = delete;
   NodeHull& operator=(const NodeHull&) = delete;
@@ -72,11 +73,7 @@ class NodeHull {
   const Piece& operator*() const { return *piece_; }
 
  private:
-  static const Piece* pieceOf(const TreeView& tree, int node) {
-    if (node == 0) return tree.outer;
-    return tree.nodes[node].isLeaf() ? tree.pieces + tree.nodes[node].piece() : nullptr;
-  }
-  Piece box_;
+  PieceRoom room_;
   const Piece* piece_;
 };
 

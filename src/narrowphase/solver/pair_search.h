@@ -121,10 +121,19 @@ class PairSearch : PartOfSolver {
     ++statistics().batches;
     horizon_.setBatch(batch);
   }
+  /// The leaf pieces of an entry's nodes; negative: the node is no leaf.
+  struct LeafPair {
+    std::int32_t a, b;
+  };
+  LeafPair leavesOf(const Entry& e) const {
+    const PairParts pair = problem().parts(e.pair);
+    NodeRoom room_a, room_b;
+    return {nodeOf(*body(pair.a).tree, e.a, room_a).piece(), nodeOf(*body(pair.b).tree, e.b, room_b).piece()};
+  }
   Aim aim() const { return horizon_.isFinest() ? Aim::leaves : Aim::split; }
   bool isLeafPair(const Entry& e) const {
-    const PairParts pair = problem().parts(e.pair);
-    return body(pair.a).tree->nodes[e.a].isLeaf() && body(pair.b).tree->nodes[e.b].isLeaf();
+    const LeafPair leaves = leavesOf(e);
+    return leaves.a >= 0 && leaves.b >= 0;
   }
   /// Whether there are convex pieces around what is below both nodes.
   bool haveHulls(const Entry& e) const {
@@ -192,13 +201,13 @@ class PairSearch : PartOfSolver {
 
 /// Makes a candidate of an entry, to be followed from `start`.
 inline Candidate PairSearch::candidateOf(const Entry& e, double start) const {
-  const PairParts pair = problem().parts(e.pair);
+  const LeafPair leaves = leavesOf(e);
   Candidate f = {};
   f.entry = e;
   f.t_lower = max(start, contacts_.watchFrom(e.pair));
   f.gap_upper = kUnknownGap;
-  f.piece_a = body(pair.a).tree->nodes[e.a].piece();
-  f.piece_b = body(pair.b).tree->nodes[e.b].piece();
+  f.piece_a = leaves.a;
+  f.piece_b = leaves.b;
   return f;
 }
 
@@ -208,7 +217,8 @@ inline bool PairSearch::stayNear(const Candidate& f) {
   constexpr double kLater = 64;
   const TimeBatch later = TimeBatch::around(min(1.0, f.t_lower + kLater * query().tolerance_time));
   const Seen seen = motions_.of(f.entry.pair, later);
-  const auto [a, b] = piecesOf(f, seen);
+  const PiecePair pieces = piecesOf(f, seen);
+  const Piece &a = pieces.a, &b = pieces.b;
   if (depthWithin(f.simplex) > kShallow * seen->smallerRadius()) return false;
   if (f.t_lower == 0 || !f.have_normal) return true;
   DifferencePoint lowest;

@@ -197,10 +197,11 @@ inline bool PoseProofs::triangles(Seen seen, int piece_a, int piece_b, int lane)
   const TreeView* trees[2] = {&seen->a(), &seen->b()};
   const int pieces[2] = {piece_a, piece_b};
   Vec3 corners[2][3];
+  if (trees[0]->pieces[0].kind != PieceKind::vertices || trees[1]->pieces[0].kind != PieceKind::vertices) return false;
   const DifferenceBody body = seen->differenceAt(trees[0]->pieces[piece_a], trees[1]->pieces[piece_b], lane);
   for (int s = 0; s < 2; ++s) {
     const Piece& piece = trees[s]->pieces[pieces[s]];
-    if (piece.kind != PieceKind::vertices || piece.num_vertices != 3) return false;
+    if (piece.num_vertices != 3) return false;
     cornersOf(*trees[s], piece, corners[s]);
   }
   for (Vec3& corner : corners[1]) corner = body.place(corner);
@@ -250,7 +251,8 @@ inline bool PoseProofs::anyPieces(Seen seen, int lane, int max_box_pairs, const 
   NodePair waiting[kDeepest], at = {from.a, from.b};
   int count = 0;
   for (int left = max_box_pairs; left > 0 && !horizon_.mustEnd();) {
-    const Node &x = A.nodes[at.a], &y = B.nodes[at.b];
+    NodeRoom room_a, room_b;
+    const Node &x = nodeOf(A, at.a, room_a), &y = nodeOf(B, at.b, room_b);
     if (x.isLeaf() && y.isLeaf()) {
       ++statistics().leaf_tests;
       if (are_triangles ? triangles(seen, x.piece(), y.piece(), lane) : leaves(seen, x.piece(), y.piece(), lane)) {
@@ -264,7 +266,9 @@ inline bool PoseProofs::anyPieces(Seen seen, int lane, int max_box_pairs, const 
       float nearness[2];
       for (int i = 0; i < 2; ++i) {
         (split_a ? child[i].a : child[i].b) = (split_a ? x : y).child + i;
-        meet[i] = boxes.meet(A.nodes[child[i].a], B.nodes[child[i].b], nearness[i]);
+        NodeRoom room;  // of the child; the other node is x or y
+        meet[i] = split_a ? boxes.meet(nodeOf(A, child[i].a, room), y, nearness[i])
+                          : boxes.meet(x, nodeOf(B, child[i].b, room), nearness[i]);
       }
       left -= 2;
       statistics().node_tests += 2;
@@ -283,7 +287,8 @@ inline bool PoseProofs::anyPieces(Seen seen, int lane, int max_box_pairs, const 
 
 /// Contact of two leaves at a lane's middle, where any contact is asked for.
 inline bool PoseProofs::leaves(Seen seen, int piece_a, int piece_b, int lane) {
-  const Piece &a = seen->a().pieces[piece_a], &b = seen->b().pieces[piece_b];
+  const PiecePair pieces(seen->a(), piece_a, seen->b(), piece_b);
+  const Piece &a = pieces.a, &b = pieces.b;
   const DifferenceBody body = seen->differenceAt(a, b, lane);
   if (triangles(seen, piece_a, piece_b, lane)) return true;
   ++statistics().contact_proofs;

@@ -4,6 +4,7 @@
 // and keeps the last one: mostly the search asks for the same pair over the same batch again.
 #pragma once
 
+#include "convex/cloud.h"
 #include "convex/contact_proof.h"
 #include "narrowphase/certificate.h"
 #include "narrowphase/solver/strays.h"
@@ -14,7 +15,15 @@ namespace FCL_ARTIC_ISA {
 
 /// Two pieces, of A and of B.
 struct PiecePair {
+  PieceRoom room_a, room_b;
   const Piece &a, &b;
+
+  PiecePair(const Piece& piece_a, const Piece& piece_b) : a(piece_a), b(piece_b) {}
+  /// By their numbers.
+  PiecePair(const TreeView& tree_a, int piece_a, const TreeView& tree_b, int piece_b)
+      : a(pieceOf(tree_a, piece_a, room_a)), b(pieceOf(tree_b, piece_b, room_b)) {}
+  PiecePair(const PiecePair&) = delete;
+  PiecePair& operator=(const PiecePair&) = delete;
 
   bool areBounded() const { return !unbounded(a) && !unbounded(b); }
 };
@@ -107,7 +116,8 @@ class RelativeMotion : PartOfSolver {
     Cached& cached = cached_[s][node & (kCached - 1)];
     if (!isSwept(s, node)) {
       cached = {node, epoch_, pool_.size()};
-      sweepNode(side(s).m, side_[s].moving->nodes[node], pad() + apartMargin(), pool_.grow());
+      NodeRoom room;
+      sweepNode(side(s).m, nodeOf(*side_[s].moving, node, room), pad() + apartMargin(), pool_.grow());
     }
     return pool_[cached.slot];
   }

@@ -26,7 +26,8 @@ inline int piecesAround(const TreeView& tree, int at_vertices, const Vec3& point
   int found = 0;
   if (at_vertices >= 0) pieces[found++] = at_vertices;
   for (int count = 1; count && found < kMaxPiecesAround;) {
-    const Node& node = tree.nodes[waiting[--count]];
+    NodeRoom room;
+    const Node& node = nodeOf(tree, waiting[--count], room);
     bool holds = true;
     for (int k = 0; k < 3; ++k) holds &= point[k] >= node.lo[k] - reach && point[k] <= node.hi[k] + reach;
     if (!holds) continue;
@@ -61,8 +62,10 @@ inline double gapWhereTheyRest(const DifferenceBody& hulls, const Simplex& simpl
     tryDirection(hulls.pose.R * axis);
   }
   const int a = pieceAtWitness(*hulls.tree_a, simplex, true), b = pieceAtWitness(*hulls.tree_b, simplex, false);
-  if (a >= 0 && hasDirection(hulls.tree_a->pieces[a])) tryDirection(sizeOf(hulls.tree_a->pieces[a]));
-  if (b >= 0 && hasDirection(hulls.tree_b->pieces[b])) tryDirection(hulls.pose.R * sizeOf(hulls.tree_b->pieces[b]));
+  PieceRoom room;
+  if (a >= 0 && hasDirection(pieceOf(*hulls.tree_a, a, room))) tryDirection(sizeOf(pieceOf(*hulls.tree_a, a, room)));
+  if (b >= 0 && hasDirection(pieceOf(*hulls.tree_b, b, room)))
+    tryDirection(hulls.pose.R * sizeOf(pieceOf(*hulls.tree_b, b, room)));
   for (int out = 0; out < simplex.n && simplex.n >= 3; ++out) {
     const Vec3 &x = simplex.v[(out + 1) % simplex.n].w, &y = simplex.v[(out + 2) % simplex.n].w;
     const Vec3& z = simplex.v[(out + 3) % simplex.n].w;

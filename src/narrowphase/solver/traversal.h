@@ -141,7 +141,8 @@ class Traversal : PartOfSolver {
 
 inline unsigned Traversal::nodesMayTouch(Seen seen, int a, int b, unsigned mask) {
   ++statistics().node_tests;
-  const Node &A = seen->a().nodes[a], &B = seen->b().nodes[b];
+  NodeRoom room_a, room_b;
+  const Node &A = nodeOf(seen->a(), a, room_a), &B = nodeOf(seen->b(), b, room_b);
   // One of two nodes has mostly been met before: its swept box is there.
   const int known = seen->isSwept(0, b) ? 0 : 1;
   const auto box = [&](int s) { return apart(seen->sweptNode(s, s ? a : b), s ? B : A); };
@@ -182,7 +183,8 @@ inline unsigned Traversal::apartFromUnbounded(Seen seen, int a, int b) {
   for (int s = 0; s < 2; ++s) {
     const Side& side = seen->side(s);
     const Piece& still = side.still->pieces[0];
-    const Node& node = side.moving->nodes[s ? a : b];
+    NodeRoom room;
+    const Node& node = nodeOf(*side.moving, s ? a : b, room);
     if (side.still->num_pieces != 1 || !unbounded(still) || node.radius >= engine::kUnbounded) continue;
     apart |= separated(side, still, boxOf(node), sizeOf(still), kAllLanes);
   }
@@ -289,7 +291,8 @@ inline bool Traversal::isWithin(Seen seen) {
 /// @param suspect  overlapping hulls count as suspected contact.
 inline Traversal::HullTest Traversal::hullsMayTouch(Seen seen, const Entry& e, bool suspect, LaneSearch search) {
   const TreeView &A = seen->a(), &B = seen->b();
-  const Node &x = A.nodes[e.a], &y = B.nodes[e.b];
+  NodeRoom room_a, room_b;
+  const Node &x = nodeOf(A, e.a, room_a), &y = nodeOf(B, e.b, room_b);
   if (x.isLeaf() && y.isLeaf())
     return {provesAny() ? leavesMayTouch(seen, x.piece(), y.piece(), e.mask, true) : e.mask, false, 0};
   if (e.deep || !NodeHull::exists(A, e.a) || !NodeHull::exists(B, e.b)) return {e.mask, false, 0};
@@ -328,14 +331,15 @@ inline unsigned Traversal::partsMayTouch(Seen seen, int a, int b, unsigned mask)
 /// @param suspect  overlap counts as suspected contact.
 inline unsigned Traversal::leavesMayTouch(Seen seen, int piece_a, int piece_b, unsigned mask, bool suspect) {
   ++statistics().leaf_tests;
-  const Piece &a = seen->a().pieces[piece_a], &b = seen->b().pieces[piece_b];
+  const PiecePair pieces(seen->a(), piece_a, seen->b(), piece_b);
+  const Piece &a = pieces.a, &b = pieces.b;
   // A direction that keeps neighbours apart mostly serves here too.
   if (seen->witness()) mask &= ~separated(seen->side(0), a, b, *seen->witness(), mask);
   if (mask && hasDirection(a)) mask &= ~separated(seen->side(0), a, b, sizeOf(a), mask);
   if (mask && hasDirection(b)) mask &= ~separated(seen->side(1), b, a, sizeOf(b), mask);
   if (!mask) return 0;
   Simplex last;
-  return notSeparated(seen, {a, b}, mask, {kLanes, last}, [&](int lane) {
+  return notSeparated(seen, pieces, mask, {kLanes, last}, [&](int lane) {
     const double t = seen->batch().at[lane];
     if (t < contacts_.watchFrom(seen->pair())) return;
     if (provesAny() && proofs_.leaves(seen, piece_a, piece_b, lane)) return;
@@ -359,7 +363,7 @@ inline unsigned Traversal::blockedLanes(Seen seen, unsigned mask) {
 /// not proven free are returned.
 inline unsigned Traversal::traverse(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open, int begin) {
   FCL_ARTIC_ASSERT(root.pair == seen->pair() && root.mask != 0 && root.mask <= kAllLanes);
-  const Node *A = seen->a().nodes, *B = seen->b().nodes;
+  const TreeView &A = seen->a(), &B = seen->b();
   // Earliest lane first: once a contact is found, nothing was spent on later lanes alone.
   const auto push = [&](const Entry& e) { stack_[__builtin_ctz(e.mask)].push(e); };
   const double split_time = aim == Aim::split ? kSplitTime * seen->amplitude() : 0;
@@ -389,7 +393,8 @@ inline unsigned Traversal::traverse(Seen seen, const Entry& root, Aim aim, Buffe
     if (!e.isWhole() || roots_tested_ != seen->batchNumber()) e.mask = nodesMayTouch(seen, e.a, e.b, e.mask);
     if (e.mask && !e.isWhole()) e.mask = partsMayTouch(seen, e.a, e.b, e.mask);
     if (!e.mask) continue;
-    const Node &x = A[e.a], &y = B[e.b];
+    NodeRoom room_a, room_b;
+    const Node &x = nodeOf(A, e.a, room_a), &y = nodeOf(B, e.b, room_b);
     if (x.isLeaf() && y.isLeaf()) {
       e.mask = leavesMayTouch(seen, x.piece(), y.piece(), e.mask, aim != Aim::freeLanes);
       if (!e.mask) continue;
