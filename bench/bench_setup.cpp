@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // What large robots cost: set-up, set-up again after an obstacle has come, memory, and free motions. Links of many
-// elements, each a ball of its own, beside the same balls as one PointCloud; and chains of many links. With
-// FCL_ARTIC_DATA also what another scene costs a Panda: a manager made anew, one that shares the robot, obstacles
-// replaced in one.
+// elements, each a ball of its own, beside the same balls as one PointCloud; and chains of many links. Clouds of a
+// depth camera as obstacles, and thinned. With FCL_ARTIC_DATA also what another scene costs a Panda: a manager made
+// anew, one that shares the robot, obstacles replaced in one.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -21,6 +21,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "camera.h"
 #include "fcl_artic/manager.h"
 #include "fcl_artic/point_cloud.h"
 #include "planning/problems.h"
@@ -155,6 +156,51 @@ void print(const std::string& what, const World& world, const Asked& asked) {
       world.setup_ms, world.again_ms, world.memory, asked.us[1].size(), rank(asked.us[1], 0.5), asked.us[0].size(),
       rank(asked.us[0], 0.5));
   std::fflush(stdout);
+}
+
+/// Clouds of a depth camera, each the obstacle of a robot that is set up, until queries can be asked again; and a
+/// frame, thinned.
+void measureClouds(const std::vector<int>& sizes, int frame, std::uint64_t seed) {
+  constexpr int kRepeats = 9;
+  constexpr double kRadius = 0.005, kVoxel = 0.02;
+  const Model robot = snake(8);
+  World world(robot);
+  for (const int size : sizes) {
+    for (const bool in_rows : {true, false}) {
+      Random random(seed);
+      std::vector<Vector3d> points = frameOf(size, random);
+      for (std::size_t i = in_rows ? 0 : points.size(); i > 1; --i) {
+        std::swap(points[i - 1], points[static_cast<std::size_t>(random.index(static_cast<int>(i)))]);
+      }
+      std::vector<double> ms, bytes;
+      for (int repeat = 0; repeat < kRepeats; ++repeat) {
+        const auto cloud = std::make_shared<fcl::CollisionObjectd>(std::make_shared<PointCloud>(points, kRadius));
+        const double before = residentMegabytes();
+        const auto begin = Clock::now();
+        world.manager.registerObject(cloud, "cloud");
+        world.manager.setup();
+        ms.push_back(1e-3 * microsecondsSince(begin));
+        bytes.push_back(1e6 * (residentMegabytes() - before) / static_cast<double>(points.size()));
+        world.manager.unregisterObject(cloud);
+        world.manager.setup();
+      }
+      fmt::print("{:<28} ready after {:7.2f} ms, at least {:7.2f}; beside its points {:5.1f} bytes a point\n",
+                 fmt::format("cloud of {}, {}", points.size(), in_rows ? "in rows" : "shuffled"), rank(ms, 0.5),
+                 rank(ms, 0), rank(bytes, 0.5));
+      std::fflush(stdout);
+    }
+  }
+  Random random(seed);
+  const PointCloud cloud(frameOf(frame, random), kRadius);
+  std::vector<double> ms;
+  std::size_t left = 0;
+  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+    const auto begin = Clock::now();
+    left = cloud.thinned(kVoxel)->points().size();
+    ms.push_back(1e-3 * microsecondsSince(begin));
+  }
+  fmt::print("{:<28} {:7.2f} ms, at least {:7.2f}; {} points left\n",
+             fmt::format("{} thinned to {} m", cloud.points().size(), kVoxel), rank(ms, 0.5), rank(ms, 0), left);
 }
 
 /// Whether one is free and the other is not, or their first contacts can't be the same.
@@ -305,10 +351,16 @@ int main(int argc, char** argv) try {
   CLI::App app("Set-up, memory and free motions of links of many elements, and of chains of many links");
   std::vector<std::size_t> elements{100, 1000, 10000, 100000}, links{50, 100, 200, 400};
   std::vector<std::size_t> obstacles{20, 200, 2000};
+  std::vector<int> clouds{100000, 1000000};
+  int frame = 307200;
   std::size_t motions = 40, swaps = 60;
   std::uint64_t seed = 1;
   app.add_option("--elements", elements, "Balls on one link")->capture_default_str();
   app.add_option("--links", links, "Of a chain with seven joints that turn")->capture_default_str();
+  app.add_option("--clouds", clouds, "Points of clouds that are obstacles")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--frame", frame, "Points that are thinned")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--motions", motions, "Random motions of up to 0.5 rad a joint, of chains 0.05")
       ->capture_default_str();
   app.add_option("--obstacles", obstacles, "Of scenes of which one takes another's place")->capture_default_str();
@@ -336,6 +388,7 @@ int main(int argc, char** argv) try {
     const World world(robot);
     print(fmt::format("chain of {} links", count), world, ask(world, motions, 0.05, seed));
   }
+  measureClouds(clouds, frame, seed);
   fmt::print("answers of elements that contradict those of the cloud: {}\n", contradictions);
   const std::filesystem::path data = planning_data::sharedData();
   if (data.empty()) {

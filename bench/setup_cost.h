@@ -4,9 +4,11 @@
 #pragma once
 
 #include <malloc.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <vector>
 
 namespace fcl_artic::bench {
@@ -20,6 +22,15 @@ inline double microsecondsSince(Clock::time_point begin) {
 /// Held of the heap by the whole process.
 inline double megabytes() {
   return static_cast<double>(mallinfo2().uordblks + mallinfo2().hblkhd) / 1e6;
+}
+
+/// Resident memory of the process (/proc/self/statm), all that is free given back first; 0 where the system does not
+/// say.
+inline double residentMegabytes() {
+  malloc_trim(0);
+  std::ifstream statm("/proc/self/statm");
+  double size = 0, resident = 0;
+  return statm >> size >> resident ? resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6 : 0;
 }
 
 /// The value that this part of them is below; 0 of none.
