@@ -3,7 +3,8 @@
 // What a free motion of a Panda costs as its surroundings grow: 10 to 10,000 boxes, cylinders and balls, all within
 // reach (clutter) or spread out at one density (room), and 20 bumpy spheres of 1k to 1M triangles, as 20 meshes and as
 // one. Random motions of 2.7 rad, self collision included. And a cloud of up to a million points, beside the same
-// points as cells of an OcTree. FCL_ARTIC_DATA names the folder with robots/ and problems/.
+// points as cells of an OcTree; and a bumpy body in the hand amid 30 boxes, a mesh or a cloud, as one body and cut into
+// many: free motions, any contact, the first. FCL_ARTIC_DATA names the folder with robots/ and problems/.
 //
 // Clutter leaves a motion its way: obstacles that come within 5 mm of it are left out, so that each motion has a scene
 // of its own. The other scenes are drawn once; motions are drawn until enough of them are free.
@@ -20,6 +21,7 @@
 #include <fmt/format.h>
 
 #include "arm_scene.h"
+#include "clouds.h"
 #include "fcl_artic/point_cloud.h"
 #include "options.h"
 #include "planning/problems.h"
@@ -33,8 +35,18 @@ namespace {
 
 constexpr Answer kFree = 2;
 constexpr double kLength = 2.7, kReach = 1.2, kShoulder = 0.333, kWay = 5e-3;
-constexpr double kNearBase = 0.25;  ///< obstacles of shared scenes keep clear of the base
-constexpr double kPoint = 3e-3;     ///< radius of a cloud's points
+constexpr double kNearBase = 0.25;        ///< obstacles of shared scenes keep clear of the base
+constexpr double kPoint = 3e-3;           ///< radius of a cloud's points
+constexpr double kShort[] = {0.35, 1.5};  ///< at most, of each joint: motions amid clouds, and with a body in the hand
+
+/// What is asked of motions that are free, or not.
+struct Question {
+  const char* set;
+  bool hit;
+  ContactMode mode;
+};
+constexpr Question kQuestions[] = {
+    {"free", false, ContactMode::first}, {"any", true, ContactMode::any}, {"first", true, ContactMode::first}};
 
 using Geometry = std::shared_ptr<fcl::CollisionGeometryd>;
 struct Obstacle {
@@ -45,7 +57,9 @@ struct Obstacle {
 /// A manager with what it holds pointers to.
 class World {
  public:
-  World(const Robot& robot, const std::vector<Obstacle>& obstacles) : manager_(robot.tree) {
+  /// @param carried  by the hand, in its frame.
+  World(const Robot& robot, const std::vector<Obstacle>& obstacles, const std::vector<Obstacle>& carried = {})
+      : manager_(robot.tree) {
     for (const LinkGeometry& g : robot.geometry) {
       objects_.push_back(std::make_unique<fcl::CollisionObjectd>(*g.object));
       manager_.bind(g.link, objects_.back().get(), g.offset);
@@ -54,6 +68,11 @@ class World {
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
       objects_.push_back(std::make_unique<fcl::CollisionObjectd>(obstacles[i].geometry, obstacles[i].pose));
       manager_.registerObject(objects_.back().get(), "o" + std::to_string(i));
+    }
+    for (const Obstacle& body : carried) {
+      objects_.push_back(std::make_unique<fcl::CollisionObjectd>(body.geometry));
+      manager_.registerObject(objects_.back().get());
+      manager_.attach("panda_hand", objects_.back().get(), body.pose, {"panda_leftfinger", "panda_rightfinger"});
     }
     manager_.setup();
   }
@@ -82,10 +101,11 @@ Eigen::Vector3d inBall(Random& random, double radius) {
   }
 }
 
-Obstacle randomObstacle(Random& random, double size, const Eigen::Vector3d& at) {
+/// @param kinds  1: boxes alone.
+Obstacle randomObstacle(Random& random, double size, const Eigen::Vector3d& at, int kinds = 3) {
   Obstacle obstacle;
   const double a = random.uniform(0.3, 1) * size, b = random.uniform(0.3, 1) * size, c = random.uniform(0.3, 1) * size;
-  switch (random.index(3)) {
+  switch (random.index(kinds)) {
     case 0:
       obstacle.geometry = std::make_shared<fcl::Boxd>(a, b, c);
       break;
@@ -100,7 +120,7 @@ Obstacle randomObstacle(Random& random, double size, const Eigen::Vector3d& at) 
   return obstacle;
 }
 
-/// Points of 20 bumpy bodies, as a scanner sees them, each off by up to a third of its radius.
+/// Points of 20 bumpy bodies.
 std::vector<Eigen::Vector3d> scan(std::size_t n, Random& random) {
   std::vector<TriangleMesh> meshes;
   while (meshes.size() < 20) {
@@ -110,17 +130,34 @@ std::vector<Eigen::Vector3d> scan(std::size_t n, Random& random) {
     body.half.setConstant(random.uniform(0.05, 0.12));
     if (body.centre.head<2>().norm() > 0.3) meshes.push_back(body.mesh(80, 40));
   }
-  const TriangleMesh all = merge(meshes);
+  return scan(merge(meshes), n, kPoint, random);
+}
+
+/// A bumpy plate in the hand's frame, as so many bodies.
+/// @param size  triangles, or points of a cloud.
+std::vector<Obstacle> plate(bool as_cloud, std::size_t size, std::size_t bodies) {
+  BumpyEllipsoid body;
+  body.centre = Eigen::Vector3d(0, 0, 0.22);
+  body.half = Eigen::Vector3d(0.04, 0.15, 0.15);
+  const int bands =
+      as_cloud ? 50 : std::max(4, static_cast<int>(std::lround(std::sqrt(static_cast<double>(size)) / 2)));
+  const TriangleMesh mesh = body.mesh(2 * bands, bands + 1);
+  Random random(8);
   std::vector<Eigen::Vector3d> points;
-  while (points.size() < n) {
-    const auto& t = all.triangles[static_cast<std::size_t>(random.index(static_cast<int>(all.triangles.size())))];
-    double u = random.uniform(0, 1), v = random.uniform(0, 1);
-    if (u + v > 1) u = 1 - u, v = 1 - v;
-    const Eigen::Vector3d a = all.vertices[t[0]], b = all.vertices[t[1]], c = all.vertices[t[2]];
-    const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
-    points.push_back(a + u * (b - a) + v * (c - a) + kPoint / 3 * Eigen::Vector3d(x, y, z));
+  if (as_cloud) points = scan(mesh, size, kPoint, random);
+  for (std::size_t i = 0; !as_cloud && i < mesh.triangles.size(); ++i) {
+    const fcl::Triangle& t = mesh.triangles[i];
+    points.push_back((mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3);
   }
-  return points;
+  std::vector<Obstacle> out;
+  for (const std::vector<std::size_t>& group : cut(points, bodies)) {
+    std::vector<Eigen::Vector3d> own;
+    TriangleMesh part{mesh.vertices, {}};
+    for (const std::size_t i : group) as_cloud ? own.push_back(points[i]) : part.triangles.push_back(mesh.triangles[i]);
+    if (as_cloud) out.push_back({std::make_shared<PointCloud>(std::move(own), kPoint)});
+    if (!as_cloud) out.push_back({toBvh<fcl::OBBRSSd>(part)});
+  }
+  return out;
 }
 
 std::shared_ptr<fcl::OcTreed> cellsOf(const std::vector<Eigen::Vector3d>& points) {
@@ -204,23 +241,66 @@ class Bench {
     }
   }
 
-  /// 400 motions of up to 0.35 rad a joint from free starts: first contacts of those that are free and of the others.
   void addPoints(const std::vector<std::size_t>& sizes) {
     for (const std::size_t size : sizes) {
       for (const bool as_cells : {false, true}) {
-        for (const bool hit : {false, true}) {
-          report_.add(as_cells ? "OcTree" : "points", hit ? "hit" : "free", fmt::format("{} points", size),
-                      [this, size, as_cells, hit] {
+        forEachQuestion([&](double length, const Question& question) {
+          report_.add(as_cells ? "OcTree" : "points", question.set, fmt::format("{} points, {} rad", size, length),
+                      [this, size, as_cells, length, question] {
                         Random random(1);
                         const auto cloud = std::make_shared<PointCloud>(scan(size, random), kPoint);
                         const World points(robot_, {{cloud}});
-                        const std::vector<JointMotion> motions = shortMotions(points.manager(), hit, random);
-                        if (!as_cells) return measuredIn(points, static_cast<double>(size), motions);
+                        const std::vector<JointMotion> motions =
+                            shortMotions(points.manager(), length, question.hit, random);
+                        if (!as_cells) return measuredIn(points, static_cast<double>(size), motions, question);
                         return measuredIn(World(robot_, {{cellsOf(cloud->points())}}), static_cast<double>(size),
-                                          motions);
+                                          motions, question);
                       });
-        }
+        });
       }
+    }
+  }
+
+  /// A plate in the hand, as one body and as many, amid boxes. The same motions for all: those of one body.
+  void addCarried(bool as_cloud, std::size_t size, const std::vector<std::size_t>& cuts) {
+    forEachQuestion([&](double length, const Question& question) {
+      for (const std::size_t bodies : cuts) {
+        report_.add(
+            as_cloud ? "carried cloud" : "carried mesh", question.set,
+            fmt::format("{}, {} rad, {}", size, length, bodies == 1 ? "1 body" : fmt::format("{} bodies", bodies)),
+            [this, as_cloud, size, length, question, bodies] {
+              Random random(9);
+              std::vector<Obstacle> boxes;
+              while (boxes.size() < 30) {
+                const Eigen::Vector3d at = inBall(random, kReach) + Eigen::Vector3d(0, 0, kShoulder);
+                if (at.head<2>().norm() > kNearBase) boxes.push_back(randomObstacle(random, 0.15, at, 1));
+              }
+              const World one(robot_, boxes, plate(as_cloud, size, 1));
+              const std::vector<JointMotion> motions = shortMotions(one.manager(), length, question.hit, random);
+              const std::vector<Obstacle> parts = plate(as_cloud, size, bodies);
+              Measured out =
+                  measuredIn(World(robot_, boxes, parts), static_cast<double>(parts.size()), motions, question);
+              if (out.row.hits != (question.hit ? motions.size() : 0))
+                throw std::runtime_error("as many bodies a motion is free, and as one it is not, or the reverse");
+              return out;
+            });
+      }
+    });
+  }
+
+  /// Of each question about what is carried: one body, and the best cut.
+  void noteCuts() {
+    for (const Row& one : report_.rows()) {
+      if (one.scene.rfind("carried", 0) != 0 || one.size != 1) continue;
+      const std::string question = one.method.substr(0, one.method.rfind(','));
+      const Row* best = nullptr;
+      for (const Row& row : report_.rows()) {
+        const bool same = row.scene == one.scene && row.set == one.set && row.method.rfind(question + ",", 0) == 0;
+        if (same && row.size > 1 && (!best || row.median_us < best->median_us)) best = &row;
+      }
+      if (best)
+        report_.note(fmt::format("{}, {}, {}: one body {:.1f} us, the best cut ({:g} bodies) {:.1f}", one.scene,
+                                 one.set, question, one.median_us, best->size, best->median_us));
     }
   }
 
@@ -259,16 +339,24 @@ class Bench {
     return motions;
   }
 
-  std::vector<JointMotion> shortMotions(const ArticulatedCollisionManager& manager, bool hit, Random& random) const {
-    constexpr int kDrawn = 400;
+  template <class Add>
+  static void forEachQuestion(const Add& add) {
+    for (const double length : kShort) {
+      for (const Question& question : kQuestions) add(length, question);
+    }
+  }
+
+  /// Of eight motions for each query asked for, from free starts, those that are free, or the others.
+  std::vector<JointMotion> shortMotions(const ArticulatedCollisionManager& manager, double length, bool hit,
+                                        Random& random) const {
     const KinematicTree& tree = *robot_.tree;
     std::vector<JointMotion> motions;
-    for (int drawn = 0; drawn < kDrawn;) {
+    for (std::size_t drawn = 0; drawn < 8 * queries_;) {
       Eigen::VectorXd q0(tree.dof()), q1(tree.dof());
       for (int v = 0; v < tree.dof(); ++v) {
         const Joint& joint = tree.joint(tree.variableJoint(v));
         q0[v] = random.uniform(joint.lower, joint.upper);
-        q1[v] = std::clamp(q0[v] + random.uniform(-0.35, 0.35), joint.lower, joint.upper);
+        q1[v] = std::clamp(q0[v] + random.uniform(-length, length), joint.lower, joint.upper);
       }
       if (!manager.isFree(q0, q0)) continue;
       ++drawn;
@@ -310,10 +398,11 @@ class Bench {
                     [&](std::size_t) -> const ArticulatedCollisionManager& { return world.manager(); });
   }
 
-  Measured measuredIn(const World& world, double size, const std::vector<JointMotion>& motions) const {
+  Measured measuredIn(const World& world, double size, const std::vector<JointMotion>& motions,
+                      const Question& question) const {
     return measured(
         size, motions, [&](std::size_t) -> const ArticulatedCollisionManager& { return world.manager(); },
-        CertifiedRequest());
+        question.mode == ContactMode::any ? planned() : CertifiedRequest());
   }
 
   template <class ManagerOf>
@@ -349,7 +438,7 @@ int main(int argc, char** argv) try {
   std::size_t queries = 50;
   int passes = 3;
   std::vector<std::size_t> obstacles = {10, 20, 100, 1000, 10000}, triangles = {1000, 10000, 100000, 1000000},
-                           points = {10000, 100000, 1000000};
+                           points = {10000, 100000, 1000000}, carried = {10000, 100000}, cuts = {1, 8, 32, 128};
   app.add_option("--queries", queries, "free motions of each scene")->check(CLI::PositiveNumber)->capture_default_str();
   app.add_option("--passes", passes, "passes over the motions; the least time of each counts")
       ->check(CLI::PositiveNumber)
@@ -357,6 +446,11 @@ int main(int argc, char** argv) try {
   app.add_option("--obstacles", obstacles, "numbers of obstacles")->capture_default_str();
   app.add_option("--triangles", triangles, "sizes of the mesh scenes")->capture_default_str();
   app.add_option("--points", points, "sizes of clouds")->capture_default_str();
+  app.add_option("--carried", carried, "triangles of a mesh and points of a cloud in the hand")
+      ->expected(2)
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--cuts", cuts, "bodies that it is cut into: powers of two")->capture_default_str();
   if (const auto status = readOptions(app, report, argc, argv)) return *status;
   const std::filesystem::path data = planning_data::sharedData();
   if (data.empty()) {
@@ -368,8 +462,10 @@ int main(int argc, char** argv) try {
   bench.addRoom(obstacles);
   bench.addMeshes(triangles);
   bench.addPoints(points);
+  for (const bool as_cloud : {false, true}) bench.addCarried(as_cloud, carried[as_cloud], cuts);
   report.run();
   for (const char* scene : {"clutter", "room"}) bench.noteRatio(scene, 20, 1000);
+  bench.noteCuts();
   return report.finish();
 } catch (const std::exception& error) {
   std::cerr << "bench_scenes: " << error.what() << '\n';

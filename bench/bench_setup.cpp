@@ -21,7 +21,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "camera.h"
+#include "clouds.h"
 #include "fcl_artic/manager.h"
 #include "fcl_artic/point_cloud.h"
 #include "planning/problems.h"
