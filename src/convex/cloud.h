@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Nodes and pieces of a tree by their numbers. The tree of a cloud stores neither below its clusters: they are made of
-// the balls when they are asked for (doc/ARCHITECTURE.md, "Clouds"). All other trees store all of theirs.
+// the balls when they are asked for (engine::Ball). All other trees store all of theirs.
 #pragma once
 
 #include "convex/node_boxes.h"
@@ -28,54 +28,85 @@ FCL_ARTIC_INLINE double radiusOfBall(const TreeView& cloud, int ball) {
   return cloud.ball_radii[static_cast<std::ptrdiff_t>(ball) * cloud.ball_radius_stride];
 }
 
-/// Box of `count` balls from this one on.
-inline engine::BoxBounds boxOfBalls(const TreeView& cloud, int first, int count) {
-  engine::BoxBounds box;
-  for (int i = first; i < first + count; ++i) {
-    const double radius = radiusOfBall(cloud, i);
-    for (int k = 0; k < 3; ++k) {
-      const double x = cloud.balls[i].center[k], lo = x - radius, hi = x + radius;
-      box.lo[k] = i == first || lo < box.lo[k] ? lo : box.lo[k];
-      box.hi[k] = i == first || hi > box.hi[k] ? hi : box.hi[k];
-    }
-  }
-  return box;
-}
-
-/// Some balls of a cluster, side by side, and the number of the left child of the node over them; the nodes over n
-/// balls take 2 (n - 1) numbers, from that child's on.
+/// Some balls of a cluster, side by side, and the left child of the node over them. The nodes over n balls take
+/// 2 (n - 1) numbers, from that child's on. Counted from the cluster's first ball, and from the left child of its node.
 struct BallRange {
-  int first, count, child;
-  BallRange left() const { return {first, count / 2, child + 2}; }
-  BallRange right() const { return {first + count / 2, count - count / 2, child + 2 * (count / 2)}; }
+  std::uint8_t first, count, child;
 };
 
-/// The node over a range of a cluster's balls, with its left child's number, or ~ball.
-inline Node nodeOver(const TreeView& cloud, const BallRange& range) {
+/// The ranges under the nodes below a cluster, by its size.
+struct ClusterNodes {
+  BallRange below[engine::kMaxClusterSize + 1][2 * (engine::kMaxClusterSize - 1)] = {};
+  std::uint8_t leaf[engine::kMaxClusterSize + 1][engine::kMaxClusterSize] = {};  ///< by the ball
+
+  constexpr ClusterNodes() {
+    for (std::uint8_t size = 2; size <= engine::kMaxClusterSize; ++size) {
+      divide({0, size, 0}, below[size]);
+      for (std::uint8_t i = 0; i < 2 * (size - 1); ++i) {
+        if (below[size][i].count == 1) leaf[size][below[size][i].first] = i;
+      }
+    }
+  }
+  static constexpr void divide(const BallRange& range, BallRange* ranges) {
+    if (range.count == 1) return;
+    const auto half = static_cast<std::uint8_t>(range.count / 2);
+    BallRange& left = ranges[range.child];
+    BallRange& right = ranges[range.child + 1];
+    left = {range.first, half, static_cast<std::uint8_t>(range.child + 2)};
+    right = {static_cast<std::uint8_t>(range.first + half), static_cast<std::uint8_t>(range.count - half),
+             static_cast<std::uint8_t>(range.child + 2 * half)};
+    divide(left, ranges);
+    divide(right, ranges);
+  }
+};
+inline constexpr ClusterNodes kClusterNodes;
+
+/// The ends of a ball's box.
+FCL_ARTIC_INLINE void boundBall(const TreeView& cloud, int ball, FourDoubles& lower, FourDoubles& upper) {
+  typedef long long Bits __attribute__((vector_size(32)));
+  Bits bits;
+  __builtin_memcpy(&bits, cloud.balls + ball, sizeof bits);
+  const auto center = reinterpret_cast<FourDoubles>(bits & Bits{-1, -1, -1, 0});
+  const double radius = radiusOfBall(cloud, ball);
+  lower = center - FourDoubles{radius, radius, radius, 0};
+  upper = center + FourDoubles{radius, radius, radius, 0};
+}
+
+/// The node over `count` balls from this one on.
+/// @param child  its left child's number; it has none over a single ball.
+inline Node nodeOverBalls(const TreeView& cloud, int first, int count, int child) {
+  FourDoubles lo, hi;
+  boundBall(cloud, first, lo, hi);
+  for (int i = first + 1; i < first + count; ++i) {
+    FourDoubles low, high;
+    boundBall(cloud, i, low, high);
+    lo = low < lo ? low : lo;
+    hi = high > hi ? high : hi;
+  }
   Node node;
-  setBox(boxOfBalls(cloud, range.first, range.count), node);
-  node.child = range.count == 1 ? ~range.first : range.child;
+  setBox(lo, hi, node);
+  setRadius(node);
+  node.child = count == 1 ? ~first : child;
   return node;
 }
 
-/// The range under a node below a cluster.
-inline BallRange rangeBelowCluster(const TreeView& cloud, int node) {
-  const int at = (node - cloud.num_nodes) / 2;
-  const engine::Ball& ball = cloud.balls[at];
-  const int first = at - ball.place;
-  BallRange range = {first, ball.cluster_size, cloud.num_nodes + 2 * first};
-  for (;;) {
-    const BallRange left = range.left(), right = range.right();
-    if (node == range.child) return left;
-    if (node == range.child + 1) return right;
-    range = node < right.child ? left : right;
-  }
+/// Whether the tree stores no nodes below this one.
+FCL_ARTIC_INLINE bool isCluster(const TreeView& tree, const Node& node) {
+  return tree.balls && node.child >= tree.num_nodes;
+}
+
+/// The node with this number, below a cluster.
+inline Node nodeBelowCluster(const TreeView& cloud, int node) {
+  const int ball = (node - cloud.num_nodes) / 2, first = ball - cloud.balls[ball].place;
+  const int numbers = cloud.num_nodes + 2 * first;
+  const BallRange& range = kClusterNodes.below[cloud.balls[ball].cluster_size][node - numbers];
+  return nodeOverBalls(cloud, first + range.first, range.count, numbers + range.child);
 }
 
 /// A node of a tree. It is the tree's own, or lies in `room`.
 FCL_ARTIC_INLINE const Node& nodeOf(const TreeView& tree, int node, NodeRoom& room) {
   if (!tree.balls || node < tree.num_nodes) return tree.nodes[node];
-  return room.node = nodeOver(tree, rangeBelowCluster(tree, node));
+  return room.node = nodeBelowCluster(tree, node);
 }
 
 inline Piece pieceOfBall(const TreeView& cloud, int ball) {

@@ -11,40 +11,51 @@ namespace FCL_ARTIC_ISA {
 
 using engine::Node;
 
-/// Two floats above the nearest to x: surely not below x, whatever the rounding mode.
-FCL_ARTIC_INLINE float roundUpToFloat(double x) {
-  const float f = static_cast<float>(x);
-  std::int32_t bits;
+/// The ends of a box along three axes; the fourth number is 0.
+typedef double FourDoubles __attribute__((vector_size(32)));
+typedef float FourFloats __attribute__((vector_size(16)));
+typedef std::int32_t FourIntegers __attribute__((vector_size(16)));
+
+FCL_ARTIC_INLINE float nearestFloat(double x) {
+  return static_cast<float>(x);
+}
+FCL_ARTIC_INLINE FourFloats nearestFloat(const FourDoubles& x) {
+  return __builtin_convertvector(x, FourFloats);
+}
+
+/// Two floats above the nearest to x: surely not below x, whatever the rounding mode. For one number or for four.
+template <class Integers = std::int32_t, class Doubles>
+FCL_ARTIC_INLINE auto roundUpToFloat(const Doubles& x) {
+  auto f = nearestFloat(x);
+  Integers bits;
   __builtin_memcpy(&bits, &f, sizeof bits);
   // Floats in the order of integers, both zeros in one place, and back.
   constexpr std::int32_t kLeast = -0x7fffffff - 1;
-  const std::int32_t order = (bits < 0 ? kLeast - bits : bits) + 2;
+  const Integers order = (bits < 0 ? kLeast - bits : bits) + 2;
   bits = order < 0 ? kLeast - order : order;
-  float up;
-  __builtin_memcpy(&up, &bits, sizeof up);
-  return up;
-}
-FCL_ARTIC_INLINE float roundDownToFloat(double x) {
-  return -roundUpToFloat(-x);
+  __builtin_memcpy(&f, &bits, sizeof f);
+  return f;
 }
 
 /// Sets a node's radius by its box.
 FCL_ARTIC_INLINE void setRadius(Node& node) {
-  double radius = 0;
+  double square = 0;
   for (int k = 0; k < 3; ++k) {
     const double half = 0.5 * (static_cast<double>(node.hi[k]) - static_cast<double>(node.lo[k]));
-    radius += half * half;
+    square += half * half;
   }
-  node.radius = roundUpToFloat(sqrt(radius));
+  node.radius = roundUpToFloat(sqrt(square));
 }
 
-/// Gives a node a box that holds this one.
+/// Gives a node a box, rounded outward; its radius stays.
+FCL_ARTIC_INLINE void setBox(const FourDoubles& lower, const FourDoubles& upper, Node& node) {
+  const FourFloats lo = -roundUpToFloat<FourIntegers>(-lower), hi = roundUpToFloat<FourIntegers>(upper);
+  __builtin_memcpy(node.lo, &lo, sizeof node.lo);
+  __builtin_memcpy(node.hi, &hi, sizeof node.hi);
+}
 FCL_ARTIC_INLINE void setBox(const engine::BoxBounds& box, Node& node) {
-  for (int k = 0; k < 3; ++k) {
-    node.lo[k] = roundDownToFloat(box.lo[k]);
-    node.hi[k] = roundUpToFloat(box.hi[k]);
-  }
-  setRadius(node);
+  const FourDoubles lower = {box.lo[0], box.lo[1], box.lo[2], 0}, upper = {box.hi[0], box.hi[1], box.hi[2], 0};
+  setBox(lower, upper, node);
 }
 
 /// Gives a node the box around its children's.
@@ -60,6 +71,7 @@ FCL_ARTIC_INLINE void enclose(const Node& left, const Node& right, Node& node) {
 FCL_ARTIC_INLINE Node makeLeaf(const engine::BoxBounds& box, std::int32_t piece) {
   Node node;
   setBox(box, node);
+  setRadius(node);
   node.child = ~piece;
   return node;
 }

@@ -47,6 +47,7 @@ class CloudBuilder {
     divide(order_.all(), std::max(kFewestOfPart, size / 256));
     parallelFor(parts_.size(), threads_, [&](std::size_t i) {
       Part& part = parts_[i];
+      part.nodes.reserve(part.range.size() / 4);
       part.nodes.resize(2);
       part.nodes[0] = build(part.range, part.nodes);
     });
@@ -120,7 +121,7 @@ class CloudBuilder {
         throw std::invalid_argument("a size is not finite or beyond 1e9 m");
     }
     const auto first = static_cast<int>(range.begin), size = static_cast<int>(range.size());
-    return baseline::nodeOver(view_, {first, size, kBelowCluster + 2 * first});
+    return baseline::nodeOverBalls(view_, first, size, kBelowCluster + 2 * first);
   }
   /// Copies a part's nodes to their places, with the numbers that their children have there.
   void store(const Part& part) {

@@ -171,6 +171,27 @@ TEST(CurveOrder, HeapsOfPointsAreSplitByPlanes) {
   EXPECT_LT(walk(*ShapeTree::fromBalls(centers, {1e-7}), centers, {1e-7}, 1e-4f).area, 40 * kHeaps * own);
 }
 
+// Whoever goes from a cluster to its balls at once comes to the leaves that halving it comes to.
+TEST(CurveOrder, ClustersHaveALeafForEachBall) {
+  Random random(5);
+  for (int size = 2; size <= engine::kMaxClusterSize; ++size) {
+    const std::vector<Vector3d> centers =
+        points(static_cast<std::size_t>(size), [&](std::size_t) { return unit(random); });
+    const auto tree = ShapeTree::fromBalls(centers, {0.01});
+    const engine::TreeView& view = tree->view();
+    ASSERT_TRUE(baseline::isCluster(view, view.nodes[0]));
+    std::set<int> leaves;
+    for (int i = 0; i < size; ++i) {
+      ASSERT_EQ(view.balls[i].place, i);
+      ASSERT_EQ(view.balls[i].cluster_size, size);
+      const int leaf = view.nodes[0].child + baseline::kClusterNodes.leaf[size][i];
+      baseline::NodeRoom room;
+      EXPECT_EQ(baseline::nodeOf(view, leaf, room).child, ~i);
+      EXPECT_TRUE(leaves.insert(leaf).second);
+    }
+  }
+}
+
 TEST(CurveOrder, RefusesWhatIsNoPlace) {
   for (const double wrong : std::vector<double>{NAN, INFINITY, -INFINITY, 2e9}) {
     std::vector<Vector3d> centers(100, Vector3d(0, 0, 0));

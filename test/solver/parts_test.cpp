@@ -250,7 +250,7 @@ TEST(RelativeMotion, SeesEachBodyFromTheOther) {
     EXPECT_NEAR(motion->side(1).m.c[0][2][k], -(-2 + 4 * world.task.whole.at[k]), 1e-14);
   }
   EXPECT_NEAR(motion->amplitude(), 0.25, 1e-9);  // half a lane: 1/16 of 4 m
-  const SweptBox& box = motion->sweptNode(0, 0);
+  const SweptBox& box = motion->sweptNode(0, 0, motion->moving(0).nodes[0]);
   const FloatLanes below = spread(-2.25f), above = spread(-1.25f);
   EXPECT_EQ(lanesOf(greater(box.lo[2], below)) & 1, 0u);  // lane 0: from -2.25 to -1.25
   EXPECT_EQ(lanesOf(greater(above, box.hi[2])) & 1, 0u);

@@ -335,7 +335,7 @@ inline void PairSearch::testHulls(Buffer<Entry>& open, const StageOne& stage_one
     if (e.mask & horizon_.live()) {
       const Seen seen = motions_.of(e.pair, whole());
       traversal_.rootsAreTested(seen);
-      if (e.isWhole()) e.mask = traversal_.nodesMayTouch(seen, 0, 0, e.mask);
+      if (e.isWhole()) e.mask = traversal_.rootsMayTouch(seen, e.mask);
       if (e.mask) {
         const bool suspect = !query().every_pair && movesFar(seen);
         const Traversal::HullTest test = traversal_.hullsMayTouch(seen, e, suspect, {true, stage_one.direction(e)});

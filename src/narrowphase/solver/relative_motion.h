@@ -112,12 +112,12 @@ class RelativeMotion : PartOfSolver {
 
   /// A node's swept box in the still body's frame, pad and margin included. One box serves every partner that the node
   /// meets in this batch.
-  const SweptBox& sweptNode(int s, int node) {
+  /// @param at  the node with this number.
+  const SweptBox& sweptNode(int s, int node, const Node& at) {
     Cached& cached = cached_[s][node & (kCached - 1)];
     if (!isSwept(s, node)) {
       cached = {node, epoch_, pool_.size()};
-      NodeRoom room;
-      sweepNode(side(s).m, nodeOf(*side_[s].moving, node, room), pad() + apartMargin(), pool_.grow());
+      sweepNode(side(s).m, at, pad() + apartMargin(), pool_.grow());
     }
     return pool_[cached.slot];
   }

@@ -63,6 +63,12 @@ struct LaneSearch {
   const Vec3Lanes* towards = nullptr;
 };
 
+/// A node and its number.
+struct NodeAt {
+  int number;
+  const Node& node;
+};
+
 /// How directions are looked for that keep two pieces apart.
 struct DirectionSearch {
   int max_overlaps;  ///< number of lanes with overlap at the middle that ends the search
@@ -89,7 +95,11 @@ class Traversal : PartOfSolver {
   Simplex& simplexOf(const Entry& e) { return simplices_.of(e.pair, e.a != 0 ? e.a : e.b); }
 
   /// Lanes of `mask` in which two nodes' boxes are not certainly apart.
-  unsigned nodesMayTouch(Seen seen, int a, int b, unsigned mask);
+  unsigned nodesMayTouch(Seen seen, const NodeAt& a, const NodeAt& b, unsigned mask);
+  /// The same of two whole bodies.
+  unsigned rootsMayTouch(Seen seen, unsigned mask) {
+    return nodesMayTouch(seen, {0, seen->a().nodes[0]}, {0, seen->b().nodes[0]}, mask);
+  }
   /// Says that the root nodes of all pairs are tested over this batch: descend() does not test them over it again.
   void rootsAreTested(Seen seen) { roots_tested_ = seen->batchNumber(); }
 
@@ -112,8 +122,10 @@ class Traversal : PartOfSolver {
 
  private:
   unsigned traverse(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open, int begin);
+  template <class Push>
+  void divideCluster(Seen seen, const Entry& e, bool in_a, const NodeAt& partner, const Push& push);
   unsigned partsMayTouch(Seen seen, int a, int b, unsigned mask);
-  unsigned apartFromUnbounded(Seen seen, int a, int b);
+  unsigned apartFromUnbounded(Seen seen, const Node& a, const Node& b);
   unsigned apartAcrossRods(Seen seen, const Node& a, const Node& b, unsigned mask);
   unsigned leavesMayTouch(Seen seen, int piece_a, int piece_b, unsigned mask, bool suspect);
   bool isWithin(Seen seen);
@@ -139,21 +151,23 @@ class Traversal : PartOfSolver {
   Buffer<Entry> undecided_;         ///< stays empty
 };
 
-inline unsigned Traversal::nodesMayTouch(Seen seen, int a, int b, unsigned mask) {
+inline unsigned Traversal::nodesMayTouch(Seen seen, const NodeAt& a, const NodeAt& b, unsigned mask) {
   ++statistics().node_tests;
-  NodeRoom room_a, room_b;
-  const Node &A = nodeOf(seen->a(), a, room_a), &B = nodeOf(seen->b(), b, room_b);
+  const Node &A = a.node, &B = b.node;
   // One of two nodes has mostly been met before: its swept box is there.
-  const int known = seen->isSwept(0, b) ? 0 : 1;
-  const auto box = [&](int s) { return apart(seen->sweptNode(s, s ? a : b), s ? B : A); };
+  const int known = seen->isSwept(0, b.number) ? 0 : 1;
+  const auto box = [&](int s) {
+    const NodeAt& moving = s ? a : b;
+    return apart(seen->sweptNode(s, moving.number, moving.node), s ? B : A);
+  };
   mask &= ~box(known);
   if (!mask) return 0;
   // The swept box of a node that is larger than the other seldom separates more, and it would have to be computed.
   const int other = 1 - known;
-  if (seen->isSwept(other, other ? a : b) || (other ? A : B).radius < kLargerNode * (other ? B : A).radius)
+  if (seen->isSwept(other, (other ? a : b).number) || (other ? A : B).radius < kLargerNode * (other ? B : A).radius)
     mask &= ~box(other);
   if (!mask) return 0;
-  if (A.radius >= engine::kUnbounded || B.radius >= engine::kUnbounded) return mask & ~apartFromUnbounded(seen, a, b);
+  if (A.radius >= engine::kUnbounded || B.radius >= engine::kUnbounded) return mask & ~apartFromUnbounded(seen, A, B);
   if (rods_throttle_.mayTry()) {
     mask &= ~apartAcrossRods(seen, A, B, mask);
     rods_throttle_.count(!mask);
@@ -178,13 +192,12 @@ inline unsigned Traversal::apartAcrossRods(Seen seen, const Node& a, const Node&
 }
 
 /// Lanes in which a node is apart from the whole of an unbounded body, along that one's normal.
-inline unsigned Traversal::apartFromUnbounded(Seen seen, int a, int b) {
+inline unsigned Traversal::apartFromUnbounded(Seen seen, const Node& a, const Node& b) {
   unsigned apart = 0;
   for (int s = 0; s < 2; ++s) {
     const Side& side = seen->side(s);
     const Piece& still = side.still->pieces[0];
-    NodeRoom room;
-    const Node& node = nodeOf(*side.moving, s ? a : b, room);
+    const Node& node = s ? a : b;
     if (side.still->num_pieces != 1 || !unbounded(still) || node.radius >= engine::kUnbounded) continue;
     apart |= separated(side, still, boxOf(node), sizeOf(still), kAllLanes);
   }
@@ -347,6 +360,32 @@ inline unsigned Traversal::leavesMayTouch(Seen seen, int piece_a, int piece_b, u
   });
 }
 
+/// Pushes the balls of a cluster whose boxes may meet the swept box of a partner. (To divide it by halves takes
+/// longer.)
+/// @param in_a  the cluster is a node of A.
+/// @param push  called with an entry of each such ball.
+template <class Push>
+inline void Traversal::divideCluster(Seen seen, const Entry& e, bool in_a, const NodeAt& partner, const Push& push) {
+  const int side = in_a ? 0 : 1;
+  const TreeView& cloud = seen->still(side);
+  const SweptBox& swept = seen->sweptNode(side, partner.number, partner.node);
+  const int cluster = in_a ? e.a : e.b;
+  FCL_ARTIC_ASSERT(cluster < cloud.num_nodes);  // nodes below clusters are not come to
+  const int numbers = cloud.nodes[cluster].child, first = (numbers - cloud.num_nodes) / 2;
+  const int size = cloud.balls[first].cluster_size;
+  statistics().node_tests += size;
+  for (int i = 0; i < size; ++i) {
+    FourDoubles lower, upper;
+    boundBall(cloud, first + i, lower, upper);
+    Node ball;
+    setBox(lower, upper, ball);
+    const unsigned mask = e.mask & ~apart(swept, ball);
+    if (!mask) continue;
+    const int number = numbers + kClusterNodes.leaf[size][i];
+    push(in_a ? Entry{e.pair, number, e.b, mask} : Entry{e.pair, e.a, number, mask});
+  }
+}
+
 inline void Traversal::descend(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open, int begin) {
   FCL_ARTIC_ASSERT(aim != Aim::freeLanes);
   traverse(seen, root, aim, open, begin);
@@ -354,7 +393,7 @@ inline void Traversal::descend(Seen seen, const Entry& root, Aim aim, Buffer<Ent
 
 inline unsigned Traversal::blockedLanes(Seen seen, unsigned mask) {
   FCL_ARTIC_ASSERT(horizon_.live() == kAllLanes && horizon_.contactLane() == 0);  // all are looked at
-  mask = nodesMayTouch(seen, 0, 0, mask);
+  mask = rootsMayTouch(seen, mask);
   if (mask) mask = hullsMayTouch(seen, {seen->pair(), 0, 0, mask}, false, {}).mask;
   return mask ? traverse(seen, {seen->pair(), 0, 0, mask}, Aim::freeLanes, undecided_, 0) : 0;
 }
@@ -390,11 +429,11 @@ inline unsigned Traversal::traverse(Seen seen, const Entry& root, Aim aim, Buffe
       if (!e.mask) continue;
     }
     if (horizon_.mustEnd()) break;
-    if (!e.isWhole() || roots_tested_ != seen->batchNumber()) e.mask = nodesMayTouch(seen, e.a, e.b, e.mask);
-    if (e.mask && !e.isWhole()) e.mask = partsMayTouch(seen, e.a, e.b, e.mask);
-    if (!e.mask) continue;
     NodeRoom room_a, room_b;
     const Node &x = nodeOf(A, e.a, room_a), &y = nodeOf(B, e.b, room_b);
+    if (!e.isWhole() || roots_tested_ != seen->batchNumber()) e.mask = nodesMayTouch(seen, {e.a, x}, {e.b, y}, e.mask);
+    if (e.mask && !e.isWhole()) e.mask = partsMayTouch(seen, e.a, e.b, e.mask);
+    if (!e.mask) continue;
     if (x.isLeaf() && y.isLeaf()) {
       e.mask = leavesMayTouch(seen, x.piece(), y.piece(), e.mask, aim != Aim::freeLanes);
       if (!e.mask) continue;
@@ -408,6 +447,10 @@ inline unsigned Traversal::traverse(Seen seen, const Entry& root, Aim aim, Buffe
       open.push(e);
     } else {
       const bool split_a = y.isLeaf() || (!x.isLeaf() && x.radius > y.radius);
+      if (isCluster(split_a ? A : B, split_a ? x : y)) {
+        divideCluster(seen, e, split_a, split_a ? NodeAt{e.b, y} : NodeAt{e.a, x}, push);
+        continue;
+      }
       push(split_a ? Entry{e.pair, x.right(), e.b, e.mask} : Entry{e.pair, e.a, y.right(), e.mask});
       (split_a ? e.a : e.b) = (split_a ? x : y).left();
       held = (e.mask >> lane & 1) != 0;
