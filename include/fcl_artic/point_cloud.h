@@ -25,12 +25,12 @@ namespace fcl_artic {
 ///     manager.registerObject(std::make_shared<fcl::CollisionObjectd>(cloud), "scan");
 ///
 /// A contact's b1 or b2 is the number of the point that is touched. A cloud cannot be changed: make another one. About
-/// 145 bytes a point are taken where it is read, beside the 24 of the cloud itself.
+/// 40 bytes a point are taken where it is read, 8 more if each has its own radius, beside the 24 of the cloud itself.
 class FCL_ARTIC_EXPORT PointCloud : public fcl::CollisionGeometryd {
  public:
   /// @param points  in m, in the geometry's own frame; at least one.
   /// @param radius  of all points, in m.
-  /// @throws std::invalid_argument naming the point: no point, more than 2^31 - 1, a coordinate that is not finite or
+  /// @throws std::invalid_argument naming the point: no point, more than 5e8, a coordinate that is not finite or
   ///   beyond 1e9 m, a radius that is not positive and finite.
   PointCloud(std::vector<Eigen::Vector3d> points, double radius);
   /// @param points  as above.

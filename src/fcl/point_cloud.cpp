@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "geometry/cloud_tree.h"
 #include "geometry/thinning.h"
 #include "numerics/constants.h"
 #include "numerics/shown.h"
@@ -61,9 +62,7 @@ PointCloud::PointCloud(std::vector<Eigen::Vector3d> points, double radius)
 PointCloud::PointCloud(std::vector<Eigen::Vector3d> points, std::vector<double> radii)
     : points_(std::move(points)), radii_(std::move(radii)) {
   if (points_.empty()) refuse("there is no point");
-  if (points_.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-    refuse("there are " + std::to_string(points_.size()) + " points; 2^31 - 1 are the most");
-  }
+  if (points_.size() > kMaxBalls) refuse("there are " + std::to_string(points_.size()) + " points; 5e8 are the most");
   if (radii_.size() != 1 && radii_.size() != points_.size()) {
     refuse("there are " + std::to_string(points_.size()) + " points and " + std::to_string(radii_.size()) + " radii");
   }

@@ -21,15 +21,14 @@ using engine::Ball;
 using engine::Node;
 using engine::TreeView;
 
-constexpr std::size_t kMaxBalls = 500000000;
 /// From this number of balls on the work goes over threads, in parts of this size at least.
 constexpr std::size_t kManyBalls = 1 << 14, kFewestOfPart = 1 << 11;
 /// While a part is built, the number of a child below a cluster is twice its first ball's, and this more. The number
 /// of nodes that are stored is not known yet.
 constexpr std::int32_t kBelowCluster = 1 << 30;
-static_assert(2 * kMaxBalls < kBelowCluster && 4 * kMaxBalls < std::size_t{1} << 31, "numbers of nodes are 32 bits");
+static_assert(2 * kMaxBalls < kBelowCluster && 4 * kMaxBalls < std::size_t{1} << 31);
 
-/// A part of the tree that one thread builds, and the nodes above the parts.
+/// Builds parts of the tree, each by one thread, then the nodes above them.
 class CloudBuilder {
  public:
   CloudBuilder(const std::vector<Eigen::Vector3d>& centers, const std::vector<double>& radii, int threads)
@@ -51,8 +50,7 @@ class CloudBuilder {
       part.nodes.resize(2);
       part.nodes[0] = build(part.range, part.nodes);
     });
-    std::int32_t stored = 2;
-    stored += 2 * static_cast<std::int32_t>(above_.size());
+    auto stored = static_cast<std::int32_t>(2 + 2 * above_.size());
     for (Part& part : parts_) {
       part.first = stored - 2;
       stored += static_cast<std::int32_t>(part.nodes.size()) - 2;
@@ -156,8 +154,8 @@ void CloudTree::show(TreeView& view) const {
 }
 
 CloudTree buildCloudTree(const std::vector<Eigen::Vector3d>& centers, const std::vector<double>& radii, int threads) {
-  FCL_ARTIC_ASSERT(centers.size() > 1 && (radii.size() == 1 || radii.size() == centers.size()));
-  if (centers.size() > kMaxBalls) throw std::invalid_argument("it has too many points");
+  FCL_ARTIC_ASSERT(centers.size() > 1 && centers.size() <= kMaxBalls);
+  FCL_ARTIC_ASSERT(radii.size() == 1 || radii.size() == centers.size());
   return CloudBuilder(centers, radii, threads).run();
 }
 

@@ -13,6 +13,9 @@
 
 namespace fcl_artic {
 
+/// With this number, the numbers of a cloud's nodes fit into 32 bits.
+constexpr std::size_t kMaxBalls = 500000000;
+
 struct CloudTree {
   LargeArray<engine::Ball> balls;
   std::vector<double> radii;       ///< one for all balls, or one each, in their order
@@ -23,11 +26,11 @@ struct CloudTree {
   void show(engine::TreeView& view) const;
 };
 
-/// The tree over two balls or more, at most 5e8. It depends on the balls alone: not on the number of threads, nor on
-/// the machine.
+/// The tree over two balls or more, at most kMaxBalls. It depends on the balls alone: not on the number of threads, nor
+/// on the machine.
 /// @param radii  one for all, or one each; finite, at least 0.
 /// @param threads  at most; 0: as many as the machine runs at once.
-/// @throws std::invalid_argument when a ball is not finite, or reaches beyond 1e9 m; when there are too many.
+/// @throws std::invalid_argument when a ball is not finite, or reaches beyond 1e9 m.
 CloudTree buildCloudTree(const std::vector<Eigen::Vector3d>& centers, const std::vector<double>& radii, int threads);
 
 }  // namespace fcl_artic
