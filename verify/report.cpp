@@ -153,10 +153,14 @@ std::vector<std::string> linesOf(const World& world) {
   }
   for (const Reason reason : {Reason::still, Reason::neighbours, Reason::allowed, Reason::touch_link}) {
     std::vector<std::string> pairs;
-    for (const auto& [pair, listed] : world.unchecked)
-      if (listed.reason == reason)
-        pairs.push_back(inQuotes(world.names[static_cast<std::size_t>(pair.first)]) + " and " +
-                        inQuotes(world.names[static_cast<std::size_t>(pair.second)]));
+    const auto strays = [&](int name) { return world.body_tolerances.count(name) + world.speeds.count(name) > 0; };
+    for (const auto& [pair, listed] : world.unchecked) {
+      if (listed.reason != reason) continue;
+      const bool give = !world.frame_tolerances.empty() || strays(pair.first) || strays(pair.second);
+      pairs.push_back(inQuotes(world.names[static_cast<std::size_t>(pair.first)]) + " and " +
+                      inQuotes(world.names[static_cast<std::size_t>(pair.second)]) +
+                      (reason == Reason::still && give ? " (but tolerances or speeds may move them)" : ""));
+    }
     addList(lines, std::string("not checked, ") + nameOf(reason), pairs);
   }
   std::vector<std::string> margins;

@@ -46,6 +46,28 @@ TEST(VerifyReport, AllThatAWorldSaysIsSaid) {
   EXPECT_FALSE(has(linesOf(cart()), "not checked"));
 }
 
+// A person is not still, though no motion is between him and the base: he moves by himself, or within a tolerance.
+TEST(VerifyReport, OfPairsWithoutAMotionItIsSaidWhatMovesThemAllTheSame) {
+  const std::string text = kHead + "frame base 0 " + hex(kHere) + "\ngeometry sphere " + hex(0.1) +
+                           "\nbody obstacle person 0 0 " + hex(at(9, 0, 0)) + "\nbody obstacle floor 0 0 " +
+                           hex(at(0, 9, 0)) + "\nbody link base 1 0 " + hex(kHere) + "\n";
+  const std::string still = "unchecked still base person\nunchecked still base floor\n", none = hex(V{0, 0, 0}) + "\n";
+  const std::string pair = "'person' and 'base'", other = "'floor' and 'base'",
+                    but = " (but tolerances or speeds may move them)";
+  const auto said = [&](const std::string& tolerance) { return linesOf(readWorld(text + tolerance + still)); };
+  const std::string plain = "not checked, no motion between them: ";
+  EXPECT_TRUE(has(said(""), plain)) << joined(said(""));
+  EXPECT_FALSE(has(said(""), but));
+  for (const std::string& of_person : {"tolerance body person " + hex(0.01) + " " + hex(0) + " " + none,
+                                       "tolerance speed person " + hex(1) + " " + hex(0) + "\n"}) {
+    EXPECT_TRUE(has(said(of_person), pair + but)) << joined(said(of_person));
+    EXPECT_TRUE(has(said(of_person), other)) << joined(said(of_person));
+    EXPECT_FALSE(has(said(of_person), other + but)) << "the floor has none";
+  }
+  const std::vector<std::string> of_base = said("tolerance frame 1 " + hex(0.01) + " " + hex(0) + " " + none);
+  EXPECT_TRUE(has(of_base, pair + but) && has(of_base, other + but)) << joined(of_base);
+}
+
 TEST(VerifyReport, AllThatAMotionSaysIsSaid) {
   const World world = cart();
   MotionText m;
