@@ -2,13 +2,13 @@
 #include "fcl_artic_moveit/cell.h"
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "fcl_artic_moveit/motion.h"
 #include "fcl_artic_moveit/shapes.h"
+#include "numbers.h"
 
 namespace fcl_artic_moveit {
 namespace {
@@ -57,9 +57,8 @@ int jointsBetween(const KinematicTree& tree, LinkId a, LinkId b) {
 
 double paddingOf(const CollisionEnv& env, const std::string& link) {
   const double padding = env.getLinkPadding(link);
-  if (std::isfinite(padding) && padding >= 0) return padding;
-  throw std::invalid_argument("link '" + link + "' has a padding of " + std::to_string(padding) +
-                              " m; it has to be 0 or more");
+  requireAtLeast0("the padding of link '" + link + "'", padding, " m");
+  return padding;
 }
 
 void requireNoScale(const CollisionEnv& env, const std::string& link) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "carried.h"
+#include "numbers.h"
 
 namespace fcl_artic_moveit {
 namespace {
@@ -77,11 +78,6 @@ std::string messageOf(const Verdict& verdict, const std::string& frame) {
       break;
   }
   return out.str();
-}
-
-void requireDistance(const char* what, double value, const char* unit) {
-  if (std::isfinite(value) && value >= 0) return;
-  throw std::invalid_argument(std::string(what) + ' ' + std::to_string(value) + unit + " is not 0 or more");
 }
 
 Verdict::Contact contactOf(const Cell& cell, const fcl_artic::CertifiedContact& from, double t, bool certain) {
@@ -169,16 +165,16 @@ Verdict answer(const Cell& cell, const robot_trajectory::RobotTrajectory& trajec
 }  // namespace
 
 void CertifierOptions::check() const {
-  requireDistance("the margin", margin, " m");
-  requireDistance("joint_tolerance_angle", tolerances.joints.angle, " rad");
-  requireDistance("joint_tolerance_length", tolerances.joints.length, " m");
-  for (const auto& [joint, value] : tolerances.own) requireDistance(("joint_tolerances: " + joint).c_str(), value, "");
-  requireDistance("base_tolerance_length", tolerances.base.length, " m");
-  requireDistance("base_tolerance_angle", tolerances.base.angle, " rad");
-  requireDistance("object_tolerance", tolerances.objects, " m");
-  requireDistance("the mimic tolerance", motion.mimic_tolerance, "");
-  requireDistance("the time limit", time_limit, " s");
-  requireDistance("the blend", motion.blend, " s");
+  requireAtLeast0("the margin", margin, " m");
+  requireAtLeast0("joint_tolerance_angle", tolerances.joints.angle, " rad");
+  requireAtLeast0("joint_tolerance_length", tolerances.joints.length, " m");
+  for (const auto& [joint, value] : tolerances.own) requireAtLeast0("joint_tolerances: " + joint, value);
+  requireAtLeast0("base_tolerance_length", tolerances.base.length, " m");
+  requireAtLeast0("base_tolerance_angle", tolerances.base.angle, " rad");
+  requireAtLeast0("object_tolerance", tolerances.objects, " m");
+  requireAtLeast0("the mimic tolerance", motion.mimic_tolerance);
+  requireAtLeast0("the time limit", time_limit, " s");
+  requireAtLeast0("the blend", motion.blend, " s");
   if (motion.interpolation == Interpolation::blends && motion.blend == 0) {
     throw std::invalid_argument("interpolation blends needs a blend above 0 s");
   }

@@ -18,6 +18,7 @@
 #include "carried.h"
 #include "fcl_artic_moveit/cell.h"
 #include "fcl_artic_moveit/motion.h"
+#include "numbers.h"
 
 namespace fcl_artic_moveit {
 namespace {
@@ -43,11 +44,6 @@ VectorXd fastest(const fcl_artic::JointTrajectory& trajectory) {
   return out;
 }
 
-void requireAtLeast0(const char* what, double value) {
-  if (std::isfinite(value) && value >= 0) return;
-  throw std::invalid_argument(std::string(what) + " is " + std::to_string(value) + "; it has to be 0 or more");
-}
-
 }  // namespace
 
 Executor executorNamed(const std::string& name) {
@@ -60,10 +56,10 @@ void ExecutionGuardOptions::check() const {
   certifier.check();
   requireAtLeast0("object_speed", certifier.tolerances.object_speed);
   for (const auto& [object, speed] : certifier.tolerances.object_speeds) {
-    requireAtLeast0(("object_speeds: " + object).c_str(), speed);
+    requireAtLeast0("object_speeds: " + object, speed);
   }
   requireAtLeast0("deceleration", deceleration);
-  for (const auto& [joint, value] : decelerations) requireAtLeast0(("decelerations: " + joint).c_str(), value);
+  for (const auto& [joint, value] : decelerations) requireAtLeast0("decelerations: " + joint, value);
   requireAtLeast0("period", period);
   if (period == 0) throw std::invalid_argument("period is 0; it has to be above");
   requireAtLeast0("reaction", reaction);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "node_parameters.h"
+#include "numbers.h"
 
 namespace fcl_artic_moveit {
 namespace {
@@ -50,9 +51,8 @@ Settings settingsOf(rclcpp::Node& node, const std::string& prefix) {
     out.guard.reaction = of.number("reaction") + out.start_delay;  // it may have begun at once
     out.guard.most_age = of.number("most_age");
     out.latency = of.number("latency");
-    if (!(out.latency >= 0 && out.start_delay >= 0)) {
-      throw std::invalid_argument("latency and start_delay have to be 0 or more");
-    }
+    requireAtLeast0("latency", out.latency);
+    requireAtLeast0("start_delay", out.start_delay);
     out.guard.check();
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument("parameters " + of.prefix() + "*: " + error.what());
