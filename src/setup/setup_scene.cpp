@@ -19,7 +19,8 @@ namespace fcl_artic {
 namespace {
 
 /// An obstacle as the engine sees it: cut into parts like the links, unless it is so large that the links move within
-/// it.
+/// it. (Then it is never cut, also if it has too few pieces for upper nodes. Measured amid a shelf and hills, of some
+/// 50 triangles each: parts make free motions 6 to 14 % slower in the mean, contacts 4 % faster to 15 % slower.)
 const engine::TreeView& viewOf(const ManagedBody& obstacle, const std::vector<ManagedBody>& links) {
   const bool large = std::all_of(links.begin(), links.end(),
                                  [&](const ManagedBody& link) { return 2 * link.size() < obstacle.size(); });
