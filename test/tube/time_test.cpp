@@ -167,6 +167,139 @@ TEST(Time, ObjectsWithASpeedHaveLongerToMove) {
   }
 }
 
+/// Judges by the balls' places at many times, each with the other ball earlier and later by up to `part` of its way.
+/// Before its motion begins, and after it ends, it stands.
+struct Places {
+  double by, part;  ///< the crossing's, the tolerance of time
+  double from, to;  ///< of the cart
+  double gap(double t, double shift) const {
+    const double s = std::max(0.0, std::min(1.0, t + shift));
+    return std::hypot(by - 1 + 2 * s, from + t * (to - from)) - 2 * kRadius;
+  }
+  double leastAt(double t) const {
+    double least = 1e300;
+    for (int k = -40; k <= 40; ++k) least = std::min(least, gap(t, part * k / 40));
+    return least;
+  }
+  double least() const {
+    double least = 1e300;
+    for (int k = 0; k <= 400; ++k) least = std::min(least, leastAt(k / 400.0));
+    return least;
+  }
+  /// Without the directions in which the two go: as if the other one could be 2 * part nearer.
+  double bound() const {
+    double least = 1e300;
+    for (int k = 0; k <= 4000; ++k) least = std::min(least, gap(k / 4000.0, 0) - 2 * part);
+    return least;
+  }
+  JointMotion motion(const KinematicTree& tree) const {
+    return JointMotion::linear(tree, VectorXd::Constant(1, from), VectorXd::Constant(1, to));
+  }
+  void judge(const CertifiedResult& r) const {
+    ASSERT_NE(r.status, Status::undecided);
+    if (r.isFree()) EXPECT_GT(least(), 0);
+    if (bound() > 1e-3) EXPECT_TRUE(r.isFree());                        // between the samples it is no nearer than that
+    if (r.certain) EXPECT_LT(leastAt(r.t_upper), 0.025 * part + 1e-9);  // a sample is so near
+  }
+};
+
+Places drawPlaces(std::mt19937& random, bool stands) {
+  std::uniform_real_distribution<double> late(-0.8, 0.8), tolerance(0, 0.3), z(-1, 1);
+  Places p;
+  p.by = late(random);
+  p.part = tolerance(random);
+  p.from = z(random);
+  p.to = stands ? p.from : z(random);
+  return p;
+}
+
+TEST(Time, CountsInBatches) {
+  std::mt19937 random(7);
+  int free = 0, contact = 0, by_time = 0;
+  for (int n = 0; n < 20; ++n) {
+    const Places first = drawPlaces(random, false);
+    Crossing crossing(first.by);
+    std::vector<Places> all;
+    std::vector<JointMotion> motions;
+    for (int k = 0; k < 12; ++k) {
+      all.push_back(drawPlaces(random, k % 4 == 0));
+      all.back().by = first.by;
+      all.back().part = first.part;
+      motions.push_back(all.back().motion(*crossing.cart.tree));
+    }
+    std::vector<CertifiedResult> punctual, results;
+    crossing.cart.manager->setup();
+    crossing.cart.manager->continuousCollide(motions, {}, punctual, 2);
+    crossing.cart.manager->setTimeTolerance(first.part);
+    crossing.cart.manager->setup();
+    for (const int threads : {1, 2, 0}) {
+      crossing.cart.manager->continuousCollide(motions, {}, results, threads);
+      ASSERT_EQ(results.size(), motions.size());
+      for (std::size_t k = 0; k < motions.size(); ++k) {
+        all[k].judge(results[k]);
+        const CertifiedResult one = crossing.cart.manager->continuousCollide(motions[k]);
+        EXPECT_EQ(results[k].status, one.status) << n << " " << k;
+        EXPECT_EQ(results[k].t_lower, one.t_lower) << n << " " << k;
+        EXPECT_EQ(results[k].t_upper, one.t_upper) << n << " " << k;
+        (results[k].isFree() ? free : contact) += 1;
+        by_time += punctual[k].isFree() && !results[k].isFree();
+      }
+    }
+  }
+  EXPECT_GT(free, 100);
+  EXPECT_GT(contact, 100);
+  EXPECT_GT(by_time, 50);
+}
+
+TEST(Time, CountsInClearance) {
+  std::mt19937 random(8);
+  int apart = 0, by_time = 0;
+  for (int n = 0; n < 60; ++n) {
+    const Places p = drawPlaces(random, n % 5 == 0);
+    Crossing crossing(p.by);
+    const bool timed = n % 2;
+    const double duration = timed ? 3 : 1;
+    crossing.cart.manager->setTimeTolerance(p.part * duration);
+    crossing.cart.manager->setup();
+    const std::vector<VectorXd> ends = {VectorXd::Constant(1, p.from), VectorXd::Constant(1, p.to)};
+    const Clearance c =
+        timed ? crossing.cart.manager->clearance(JointTrajectory::linear(*crossing.cart.tree, {5, 8}, ends))
+              : crossing.cart.manager->clearance(p.motion(*crossing.cart.tree));
+    const double least = std::max(0.0, p.least()), bound = std::max(0.0, p.bound());
+    EXPECT_LE(c.lower, least + 1e-12) << n;
+    EXPECT_GE(c.lower, bound - std::max(0.01 * bound, 1e-4) - 1e-9) << n;
+    const double t = timed ? (c.time - 5) / 3 : c.time;
+    if (std::isfinite(c.upper)) EXPECT_LE(p.leastAt(t), c.upper + 0.025 * p.part + 1e-9) << n;
+    apart += c.lower > 0;
+    Places punctual = p;
+    punctual.part = 0;
+    by_time += c.lower > 0 && c.lower < 0.9 * punctual.least();
+  }
+  EXPECT_GT(apart, 20);
+  EXPECT_GT(by_time, 10);
+}
+
+/// The cart stands, and the other one passes: early or late it goes the same way.
+TEST(Time, CountsAtSingleConfigurations) {
+  std::mt19937 random(9);
+  int free = 0, contact = 0, cautious = 0;
+  for (int n = 0; n < 120; ++n) {
+    Places p = drawPlaces(random, true);
+    if (n % 4 == 0) p.from = p.to = 0.05 * p.from;
+    Crossing crossing(p.by);
+    crossing.cart.manager->setTimeTolerance(p.part);
+    crossing.cart.manager->setup();
+    const VectorXd q = VectorXd::Constant(1, p.from);
+    const CertifiedResult result = crossing.cart.manager->collide(q);
+    p.judge(result);
+    EXPECT_EQ(crossing.cart.manager->isFree(q, q), result.isFree()) << n;
+    (result.isFree() ? free : p.least() <= 0 ? contact : cautious) += 1;
+  }
+  EXPECT_GT(free, 20);
+  EXPECT_GT(contact, 5);
+  EXPECT_GT(cautious, 10);
+}
+
 }  // namespace
 }  // namespace tube_test
 }  // namespace fcl_artic
