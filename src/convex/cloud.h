@@ -64,6 +64,7 @@ inline constexpr ClusterNodes kClusterNodes;
 /// The ends of a ball's box.
 FCL_ARTIC_INLINE void boundBall(const TreeView& cloud, int ball, FourDoubles& lower, FourDoubles& upper) {
   typedef long long Bits __attribute__((vector_size(32)));
+  static_assert(sizeof(Bits) == sizeof(engine::Ball));
   Bits bits;
   __builtin_memcpy(&bits, cloud.balls + ball, sizeof bits);
   const auto center = reinterpret_cast<FourDoubles>(bits & Bits{-1, -1, -1, 0});

@@ -42,7 +42,6 @@ struct alignas(32) Ball {
   std::uint16_t cluster_size;  ///< the number of balls
 };
 constexpr int kMaxClusterSize = 16;
-static_assert(sizeof(Ball) == 32, "a ball is read at once");
 
 /// A body's geometry: constant, shared by threads. Node 0 is the root, node 1 is not used.
 struct TreeView {
