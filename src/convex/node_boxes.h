@@ -23,16 +23,19 @@ FCL_ARTIC_INLINE FourFloats nearestFloat(const FourDoubles& x) {
   return __builtin_convertvector(x, FourFloats);
 }
 
-/// Two floats above the nearest to x: surely not below x, whatever the rounding mode. For one number or for four.
+/// Two floats above the nearest to x + 2^-125: surely not below x, whatever the rounding mode. That holds also where
+/// floats below 2^-126 are written, or read, as 0. For one number or for four.
 template <class Integers = std::int32_t, class Doubles>
 FCL_ARTIC_INLINE auto roundUpToFloat(const Doubles& x) {
-  auto f = nearestFloat(x);
+  auto f = nearestFloat(x + 0x1p-125);
   Integers bits;
   __builtin_memcpy(&bits, &f, sizeof bits);
   // Floats in the order of integers, both zeros in one place, and back.
-  constexpr std::int32_t kLeast = -0x7fffffff - 1;
-  const Integers order = (bits < 0 ? kLeast - bits : bits) + 2;
-  bits = order < 0 ? kLeast - order : order;
+  constexpr std::int32_t kAllButSign = 0x7fffffff;
+  Integers negative = bits >> 31;  // all bits, or none
+  const Integers order = (bits ^ (negative & kAllButSign)) - negative + 2;
+  negative = order >> 31;
+  bits = (order + negative) ^ (negative & kAllButSign);
   __builtin_memcpy(&f, &bits, sizeof f);
   return f;
 }

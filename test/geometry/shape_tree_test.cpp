@@ -370,9 +370,9 @@ TEST(ShapeTree, BoxesAreRoundedOutward) {
   for (const double x : {0.0, -0.0, 1e-300, 0.1, 1.0, 1 - 0x1p-25, 1 + 0x1p-25, 3e5, 1e9}) {
     for (const double y : {x, -x}) {
       const engine::Node node = buildBoxTree({{{y, y, y}, {y, y, y}}})[0];
-      const float at = static_cast<float>(y);
-      EXPECT_EQ(node.lo[0], std::nextafter(std::nextafter(at, -1e30f), -1e30f)) << y;
-      EXPECT_EQ(node.hi[0], std::nextafter(std::nextafter(at, 1e30f), 1e30f)) << y;
+      const auto low = static_cast<float>(y - 0x1p-125), high = static_cast<float>(y + 0x1p-125);
+      EXPECT_EQ(node.lo[0], std::nextafter(std::nextafter(low, -1e30f), -1e30f)) << y;
+      EXPECT_EQ(node.hi[0], std::nextafter(std::nextafter(high, 1e30f), 1e30f)) << y;
     }
   }
 }
