@@ -109,7 +109,11 @@ inline void StageOne::setWholeBox(int mover) {
   float ends[6];
   endsOfWhole(mover_box_[mover], ends);
   engine::EightBoxes& boxes = whole_boxes_[mover / kLanes];
-  for (int i = 0; i < 6; ++i) (i < 3 ? boxes.lo : boxes.hi)[i % 3][mover % kLanes] = ends[i];
+  // (With -fsanitize=undefined g++ 12 writes some numbers of `(c ? lo : hi)[k][lane] = x` elsewhere.)
+  for (int i = 0; i < 6; ++i) {
+    float* const lanes = i < 3 ? boxes.lo[i] : boxes.hi[i - 3];
+    lanes[mover % kLanes] = ends[i];
+  }
 }
 
 /// A mover's box over [0, 1], in all lanes.
