@@ -7,7 +7,10 @@
 
 #include "geometry/shape_tree.h"
 #include "geometry/wide_tree.h"
+#include "numerics/baseline_isa.h"
 #include "random.h"
+
+#include "convex/cloud.h"
 
 namespace wide_tree_test {
 
@@ -51,8 +54,16 @@ std::shared_ptr<const ShapeTree> balls(Random& random, int count) {
   return ShapeTree::fromPieces(pieces);
 }
 
+/// The same as a cloud, whose tree stores no nodes below its clusters.
+std::shared_ptr<const ShapeTree> cloud(Random& random, int count) {
+  std::vector<Vector3d> centers(static_cast<std::size_t>(count));
+  for (Vector3d& center : centers) center = unit(random) + Vector3d(5, 0, 0);
+  return ShapeTree::fromBalls(centers, {kRadius});
+}
+
 void piecesBelow(const TreeView& tree, int at, std::vector<int>& pieces) {
-  const Node& node = tree.nodes[at];
+  baseline::NodeRoom room;
+  const Node& node = baseline::nodeOf(tree, at, room);
   if (node.isLeaf()) {
     pieces.push_back(node.piece());
     return;
@@ -107,7 +118,8 @@ TEST(WideTree, HoldsEachLeafOnceInBoxesThatHoldIt) {
 TEST(UpperNodes, HoldEachPieceOnce) {
   Random random(1);
   int patches = 0;
-  for (const auto& tree : {surface(random, 6), surface(random, 40), balls(random, 64), balls(random, 3000)}) {
+  for (const auto& tree : {surface(random, 6), surface(random, 40), balls(random, 64), balls(random, 3000),
+                           cloud(random, 64), cloud(random, 3000)}) {
     const TreeView& view = tree->viewWithUpperNodes();
     ASSERT_EQ(view.nodes, tree->view().nodes);
     ASSERT_TRUE(view.upper);
@@ -124,6 +136,7 @@ TEST(UpperNodes, HoldEachPieceOnce) {
           continue;
         }
         for (int k = 0; k < 3; ++k) {
+          ASSERT_LT(at, view.num_nodes);
           EXPECT_EQ(upper.boxes.lo[k][lane], view.nodes[at].lo[k]);
           EXPECT_EQ(upper.boxes.hi[k][lane], view.nodes[at].hi[k]);
         }
@@ -153,6 +166,7 @@ TEST(UpperNodes, SmallAndUnboundedBodiesHaveNone) {
   Random random(3);
   EXPECT_FALSE(surface(random, 5)->viewWithUpperNodes().upper);
   EXPECT_FALSE(balls(random, 63)->viewWithUpperNodes().upper);
+  EXPECT_FALSE(cloud(random, 63)->viewWithUpperNodes().upper);
   EXPECT_FALSE(ShapeTree::fromPieces({})->viewWithUpperNodes().upper);
 }
 
