@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "numerics/baseline_isa.h"
 
@@ -62,6 +63,91 @@ engine::EightBoxes emptyBoxes() {
   return boxes;
 }
 
+/// The tree over given boxes, one at least, from the root down.
+class WideBuilder {
+ public:
+  explicit WideBuilder(const std::vector<BoxBounds>& boxes) : leaves_(boxes.size()) {
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      leaves_[i] = baseline::makeLeaf(boxes[i], static_cast<std::int32_t>(i));
+  }
+  std::vector<WideNode> run() {
+    wide_.emplace_back();
+    build(0, {0, leaves_.size()});
+    return std::move(wide_);
+  }
+
+ private:
+  /// Leaves from `begin` to `end`.
+  struct Range {
+    std::size_t begin, end;
+    std::size_t size() const { return end - begin; }
+  };
+
+  /// Sets wide_[me] and all nodes below it, which are full but for one at each level. (In a tree that is halved at the
+  /// median the last nodes have two or three leaves each: twice as many nodes are looked at.)
+  void build(std::size_t me, Range leaves) {
+    std::size_t below = 1;  // leaves of a child
+    while (below * kChildren < leaves.size()) below *= kChildren;
+    std::vector<Range> children;
+    const std::size_t needed = (leaves.size() + below - 1) / below;
+    if (below > 1) takeLargest(kChildren - needed, leaves, children);
+    divide(leaves, below, children);
+    WideNode node = {};
+    const std::size_t first = wide_.size();
+    std::size_t next = first;
+    for (std::size_t i = 0; i < children.size(); ++i) {
+      const bool leaf = children[i].size() == 1;
+      setBox(boxAround(children[i]), i, node.boxes);
+      node.child[i] = leaf ? leaves_[children[i].begin].child : static_cast<std::int32_t>(next++);
+    }
+    node.num_children = static_cast<std::int32_t>(children.size());
+    wide_[me] = node;
+    wide_.resize(next);
+    next = first;
+    for (const Range& child : children) {
+      if (child.size() > 1) build(next++, child);
+    }
+  }
+  /// Makes the largest leaves children by themselves: they would only blow up nodes below.
+  void takeLargest(std::size_t count, Range& leaves, std::vector<Range>& children) {
+    std::nth_element(at(leaves.begin), at(leaves.begin + count), at(leaves.end), [](const Node& a, const Node& b) {
+      return a.radius > b.radius || (a.radius == b.radius && a.piece() < b.piece());
+    });
+    for (; count > 0; --count, ++leaves.begin) children.push_back({leaves.begin, leaves.begin + 1});
+  }
+  /// Adds children of `below` leaves each, the last one of those that are left: halves across the longest side.
+  void divide(const Range& leaves, std::size_t below, std::vector<Range>& children) {
+    if (leaves.size() <= below) return children.push_back(leaves);
+    const Node box = boxAround(leaves);
+    int axis = 0;
+    for (int k = 1; k < 3; ++k) {
+      if (box.hi[k] - box.lo[k] > box.hi[axis] - box.lo[axis]) axis = k;
+    }
+    const std::size_t half = leaves.begin + (leaves.size() + below - 1) / below / 2 * below;
+    // By the boxes' middles, then by the index: the same tree on every machine.
+    std::nth_element(at(leaves.begin), at(half), at(leaves.end), [axis](const Node& a, const Node& b) {
+      const float middle_a = a.lo[axis] + a.hi[axis], middle_b = b.lo[axis] + b.hi[axis];
+      return middle_a < middle_b || (middle_a == middle_b && a.piece() < b.piece());
+    });
+    divide({leaves.begin, half}, below, children);
+    divide({half, leaves.end}, below, children);
+  }
+  Node boxAround(const Range& leaves) const {
+    Node box = leaves_[leaves.begin];
+    for (std::size_t i = leaves.begin + 1; i < leaves.end; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        box.lo[k] = std::min(box.lo[k], leaves_[i].lo[k]);
+        box.hi[k] = std::max(box.hi[k], leaves_[i].hi[k]);
+      }
+    }
+    return box;
+  }
+  std::vector<Node>::iterator at(std::size_t i) { return leaves_.begin() + static_cast<std::ptrdiff_t>(i); }
+
+  std::vector<Node> leaves_;
+  std::vector<WideNode> wide_;
+};
+
 /// The number of pieces below each node that is stored. (Children come after their parents.)
 std::vector<std::int32_t> countPieces(const engine::TreeView& tree) {
   std::vector<std::int32_t> count(static_cast<std::size_t>(tree.num_nodes), 1);
@@ -80,23 +166,8 @@ std::vector<std::int32_t> countPieces(const engine::TreeView& tree) {
 
 }  // namespace
 
-std::vector<WideNode> widen(const std::vector<Node>& tree) {
-  std::vector<WideNode> wide;
-  if (tree.empty()) return wide;
-  const auto canDivide = [&](std::int32_t node) { return !tree[static_cast<std::size_t>(node)].isLeaf(); };
-  std::vector<std::int32_t> tops = {0};  // of wide[i], the node that it stands for
-  for (std::size_t i = 0; i < tops.size(); ++i) {
-    WideNode node = {};
-    for (const std::int32_t index : childrenOf(tree.data(), tops[i], canDivide)) {
-      const Node& child = tree[static_cast<std::size_t>(index)];
-      const std::int32_t lane = node.num_children++;
-      setBox(child, static_cast<std::size_t>(lane), node.boxes);
-      node.child[lane] = child.isLeaf() ? child.child : static_cast<std::int32_t>(tops.size());
-      if (!child.isLeaf()) tops.push_back(index);
-    }
-    wide.push_back(node);
-  }
-  return wide;
+std::vector<WideNode> wideTree(const std::vector<BoxBounds>& boxes) {
+  return boxes.empty() ? std::vector<WideNode>() : WideBuilder(boxes).run();
 }
 
 std::vector<engine::UpperNode> upperNodes(const engine::TreeView& tree) {

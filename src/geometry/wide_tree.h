@@ -5,15 +5,15 @@
 
 #include <vector>
 
+#include "geometry/shape_tree.h"
 #include "model/eight_boxes.h"
 #include "model/tree_view.h"
 
 namespace fcl_artic {
 
-/// The same leaves under nodes of up to eight children.
-/// @param tree  buildBoxTree().
-/// @return node 0 is the root; empty where `tree` is.
-std::vector<engine::WideNode> widen(const std::vector<engine::Node>& tree);
+/// A tree over boxes.
+/// @return node 0 is the root; leaf ~i has box i, rounded outward. Empty for no boxes.
+std::vector<engine::WideNode> wideTree(const std::vector<BoxBounds>& boxes);
 
 /// The upper levels of a large body's tree, down to small nodes of few pieces.
 /// @return node 0 is the root's; empty for a body of few pieces, and for an unbounded one.

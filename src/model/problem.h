@@ -48,13 +48,14 @@ struct BaseStray {
 };
 
 /// The numbers that stage 1 asks of an obstacle that stands still, in three cache lines. In a large scene most of its
-/// time went into fetching these numbers one after the other.
+/// time went into fetching these numbers one after the other. They lie in the order of the tree over obstacles.
 struct alignas(64) StillBounds {
   Placement inverse;  ///< Body::inverse
   CoreBox box;
   const TreeView* tree;
   bool solid;    ///< one bounded piece that is no triangle: a point within its surface is within it
   bool entered;  ///< it has upper nodes: stage 1 goes into it
+  std::int32_t obstacle = 0;
 };
 
 /// Two links to check. The motion is B's, seen from A. (A link and an obstacle need no such record: A is the obstacle,
@@ -118,11 +119,11 @@ struct Problem : PairNumbering {
   const std::uint8_t* scene_allowed = nullptr;  ///< per scene pair: 1 = may touch; null: none may
   std::int32_t num_scene_allowed = 0;           ///< scene pairs that may touch
   const std::int32_t* obstacles = nullptr;      ///< body of obstacle o
-  const StillBounds* still_bounds = nullptr;    ///< of obstacle o
-  const WideNode* obstacle_tree = nullptr;      ///< boxes in the world; leaf piece = obstacle; null when there is none
-  bool strays = false;                          ///< a step, a body or the base strays
-  BaseStray base;                               ///< against all that is no link
-  LargestStrays largest;                        ///< of bodies
+  const StillBounds* still_bounds = nullptr;    ///< of each obstacle, in the order of obstacle_tree
+  const WideNode* obstacle_tree = nullptr;  ///< boxes in the world; leaf ~i has still_bounds[i]; null if there is none
+  bool strays = false;                      ///< a step, a body or the base strays
+  BaseStray base;                           ///< against all that is no link
+  LargestStrays largest;                    ///< of bodies
   /// Where a mesh is a solid: asked of each pair with one, at a pose. Null: all meshes are surfaces.
   void (*contained)(const Body& a, const Body& b, const PairPose& pose, ContainmentVerdict& found) = nullptr;
 

@@ -171,7 +171,7 @@ void Culling::bodyPairs(const std::function<bool(engine::PairId)>& wanted, const
             stack.push_back(node.child[i]);
             continue;
           }
-          const engine::PairId pair = problem_->scenePair(m, ~node.child[i]);
+          const engine::PairId pair = problem_->scenePair(m, problem_->still_bounds[~node.child[i]].obstacle);
           if (!wanted(pair)) continue;
           const int coarse = std::min(kCoarse, level);
           std::uint64_t mask = divide(m, 0, 1, coarse, lo, hi);

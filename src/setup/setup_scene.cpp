@@ -103,8 +103,6 @@ void Setup::buildObstacles(const Registry& registry) {
   const std::size_t first = num_links_ + registry.moving().size();
   std::vector<BoxBounds> boxes(obstacles.size());
   still_.bodies.resize(obstacles.size());
-  still_.bounds.clear();
-  still_.bounds.reserve(obstacles.size());
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
     const ManagedBody& obstacle = obstacles[o];
     engine::Body& body = bodies_[first + o];
@@ -115,10 +113,20 @@ void Setup::buildObstacles(const Registry& registry) {
     std::copy_n(body.lo, 3, boxes[o].lo);
     std::copy_n(body.hi, 3, boxes[o].hi);
     still_.bodies[o] = static_cast<std::int32_t>(first + o);
-    still_.bounds.push_back({body.inverse, obstacle.shape->coreBox(), body.tree, baseline::isSolid(*body.tree),
-                             body.tree->upper != nullptr});
   }
-  still_.tree = widen(buildBoxTree(boxes));
+  still_.tree = wideTree(boxes);
+  still_.bounds.clear();
+  still_.bounds.reserve(obstacles.size());
+  for (engine::WideNode& node : still_.tree) {
+    for (std::int32_t i = 0; i < node.num_children; ++i) {
+      if (node.child[i] >= 0) continue;
+      const std::int32_t o = ~node.child[i];
+      const engine::Body& body = bodies_[first + static_cast<std::size_t>(o)];
+      node.child[i] = ~static_cast<std::int32_t>(still_.bounds.size());
+      still_.bounds.push_back({body.inverse, obstacles[static_cast<std::size_t>(o)].shape->coreBox(), body.tree,
+                               baseline::isSolid(*body.tree), body.tree->upper != nullptr, o});
+    }
+  }
 }
 
 /// Pairs of link and still obstacle that may touch, or cannot, or stand still against each other.

@@ -83,7 +83,7 @@ TEST(WideTree, HoldsEachLeafOnceInBoxesThatHoldIt) {
         box.hi[k] = box.lo[k] + 0.1 * std::abs(at(random));
       }
     }
-    const std::vector<engine::WideNode> tree = widen(buildBoxTree(boxes));
+    const std::vector<engine::WideNode> tree = wideTree(boxes);
     std::vector<int> seen(count, 0), parents(tree.size(), 0);
     for (const engine::WideNode& node : tree) {
       ASSERT_GE(node.num_children, 1);
@@ -111,8 +111,26 @@ TEST(WideTree, HoldsEachLeafOnceInBoxesThatHoldIt) {
     EXPECT_EQ(seen, std::vector<int>(count, 1));
     parents[0] = 1;
     EXPECT_EQ(parents, std::vector<int>(tree.size(), 1));
+    // Full nodes would be count / 7; at each level the last one may have few children.
+    EXPECT_LE(tree.size(), count / 7 + 4);
   }
-  EXPECT_TRUE(widen({}).empty());
+  EXPECT_TRUE(wideTree({}).empty());
+}
+
+TEST(WideTree, HasTheLargestBoxesAtItsRoot) {
+  std::mt19937 random(13);
+  std::uniform_real_distribution<double> at(-1, 1);
+  std::vector<BoxBounds> boxes(100);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const double size = i == 40 || i == 77 ? 1.9 : 0.05;
+    for (int k = 0; k < 3; ++k) {
+      boxes[i].lo[k] = at(random);
+      boxes[i].hi[k] = boxes[i].lo[k] + size;
+    }
+  }
+  const engine::WideNode root = wideTree(boxes)[0];
+  EXPECT_EQ(std::count(root.child, root.child + root.num_children, ~40), 1);
+  EXPECT_EQ(std::count(root.child, root.child + root.num_children, ~77), 1);
 }
 
 TEST(UpperNodes, HoldEachPieceOnce) {

@@ -91,7 +91,7 @@ inline void Containment::testAtStart(PairId pair) {
     for (int m = 0; m < problem().num_scene_movers; ++m) {
       const Buffer<BoxHit>& met = stage_one_.meetObstacles(m);
       for (int i = 0; i < met.size(); ++i) {
-        const PairId pair = problem().scenePair(m, met[i].obstacle);
+        const PairId pair = problem().scenePair(m, problem().still_bounds[met[i].place].obstacle);
         if (!(met[i].mask & 1) || problem().isAllowed(pair)) continue;
         testAtStart(pair);
       }

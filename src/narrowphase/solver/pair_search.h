@@ -332,6 +332,11 @@ inline void PairSearch::testHulls(Buffer<Entry>& open, const StageOne& stage_one
   for (int n = 0; n < roots && !horizon_.isOver(); ++n) {
     const int i = order.size() ? order[n] : n;
     Entry& e = open[i];
+    if (n + 2 < roots) {  // what the one after the next needs first
+      const TreeView& tree = *body(problem().parts(open[order.size() ? order[n + 2] : n + 2].pair).a).tree;
+      prefetch(tree.nodes);
+      prefetch(tree.outer);
+    }
     if (e.mask & horizon_.live()) {
       const Seen seen = motions_.of(e.pair, whole());
       traversal_.rootsAreTested(seen);

@@ -9,9 +9,9 @@
 namespace fcl_artic {
 namespace FCL_ARTIC_ISA {
 
-/// An obstacle, and the lanes in which its box meets that of a mover.
+/// An obstacle, by its place in Problem::still_bounds, and the lanes in which its box meets that of a mover.
 struct BoxHit {
-  std::int32_t obstacle;
+  std::int32_t place;
   unsigned mask;
 };
 
@@ -50,7 +50,8 @@ class StageOne : PartOfSolver {
   double apartFromObstacle(PairId pair, int mover, int obstacle) const {
     return query().margins.of(pair) + (mover_stray_[mover] + strays_.ofObstacle(problem().obstacles[obstacle]));
   }
-  unsigned lssMayTouch(int mover, int obstacle_number, unsigned mask, Vec3Lanes& direction);
+  unsigned lssMayTouch(PairId pair, int mover, const engine::StillBounds& obstacle, unsigned mask,
+                       Vec3Lanes& direction);
   void expectContact(PairId pair, int mover, const engine::StillBounds& obstacle, unsigned mask,
                      const NearestToBox& nearest);
   void sweptInWorld(int mover, engine::SweptLink* parts) const;
@@ -160,13 +161,12 @@ inline const Buffer<BoxHit>& StageOne::meetObstacles(int mover) {
 /// Lanes of `mask` in which a link and an obstacle that stands still are not certainly apart by the link's line swept
 /// sphere.
 /// @param[out] direction  from the obstacle to the link, as in direction().
-inline unsigned StageOne::lssMayTouch(int mover, int obstacle_number, unsigned mask, Vec3Lanes& direction) {
-  const PairId pair = problem().scenePair(mover, obstacle_number);
-  const engine::StillBounds& obstacle = problem().still_bounds[obstacle_number];
+inline unsigned StageOne::lssMayTouch(PairId pair, int mover, const engine::StillBounds& obstacle, unsigned mask,
+                                      Vec3Lanes& direction) {
   NearestToBox nearest;
   const WorldSeen world = {obstacle.inverse};
-  mask &=
-      ~certainlyApart(mover_lss_[mover], obstacle.box, world, apartFromObstacle(pair, mover, obstacle_number), nearest);
+  mask &= ~certainlyApart(mover_lss_[mover], obstacle.box, world, apartFromObstacle(pair, mover, obstacle.obstacle),
+                          nearest);
   direction = nearest.direction;
   if (mask && obstacle.solid) expectContact(pair, mover, obstacle, mask, nearest);
   return mask;
@@ -219,18 +219,18 @@ inline bool StageOne::enterCarried(PairId pair, unsigned mask, const double* lss
 inline void StageOne::cullObstacles(int mover, Buffer<Entry>& open) {
   const Buffer<BoxHit>& met = meetObstacles(mover);
   for (int i = 0; i < met.size() && !horizon_.isOver(); ++i) {
-    const PairId pair = problem().scenePair(mover, met[i].obstacle);
+    const engine::StillBounds& obstacle = problem().still_bounds[met[i].place];
+    const PairId pair = problem().scenePair(mover, obstacle.obstacle);
     if (problem().isAllowed(pair)) continue;
-    const engine::StillBounds& obstacle = problem().still_bounds[met[i].obstacle];
     if (obstacle.entered) {
       SweptLss seen;
       seeFrom(obstacle.inverse, mover_lss_[mover], seen);
-      patches_.cull({pair, 0, 0, met[i].mask}, Patches::Large::a, apartFromObstacle(pair, mover, met[i].obstacle), seen,
-                    open);
+      patches_.cull({pair, 0, 0, met[i].mask}, Patches::Large::a, apartFromObstacle(pair, mover, obstacle.obstacle),
+                    seen, open);
       continue;
     }
     Vec3Lanes direction;
-    if (const unsigned left = lssMayTouch(mover, met[i].obstacle, met[i].mask, direction)) {
+    if (const unsigned left = lssMayTouch(pair, mover, obstacle, met[i].mask, direction)) {
       if (body(problem().movers[mover]).tree->upper) {
         double lss[7];
         lssOfBox(obstacle.box, lss);
@@ -240,6 +240,7 @@ inline void StageOne::cullObstacles(int mover, Buffer<Entry>& open) {
       entry.direction = directions_.size();
       directions_.push(direction);
       prefetch(obstacle.tree);
+      prefetch(problem().bodies + problem().obstacles[obstacle.obstacle]);
     }
   }
 }
