@@ -119,10 +119,8 @@ class WideBuilder {
   void divide(const Range& leaves, std::size_t below, std::vector<Range>& children) {
     if (leaves.size() <= below) return children.push_back(leaves);
     const Node box = boxAround(leaves);
-    int axis = 0;
-    for (int k = 1; k < 3; ++k) {
-      if (box.hi[k] - box.lo[k] > box.hi[axis] - box.lo[axis]) axis = k;
-    }
+    const auto side = [&box](int k) { return box.hi[k] - box.lo[k]; };
+    const int longer = side(1) > side(0) ? 1 : 0, axis = side(2) > side(longer) ? 2 : longer;
     const std::size_t half = leaves.begin + (leaves.size() + below - 1) / below / 2 * below;
     // By the boxes' middles, then by the index: the same tree on every machine.
     std::nth_element(at(leaves.begin), at(half), at(leaves.end), [axis](const Node& a, const Node& b) {
@@ -134,12 +132,7 @@ class WideBuilder {
   }
   Node boxAround(const Range& leaves) const {
     Node box = leaves_[leaves.begin];
-    for (std::size_t i = leaves.begin + 1; i < leaves.end; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        box.lo[k] = std::min(box.lo[k], leaves_[i].lo[k]);
-        box.hi[k] = std::max(box.hi[k], leaves_[i].hi[k]);
-      }
-    }
+    for (std::size_t i = leaves.begin + 1; i < leaves.end; ++i) enclose(box, leaves_[i], box);
     return box;
   }
   std::vector<Node>::iterator at(std::size_t i) { return leaves_.begin() + static_cast<std::ptrdiff_t>(i); }
