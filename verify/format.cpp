@@ -565,7 +565,7 @@ const char* nameOf(Role role) {
   return kRoles[static_cast<int>(role)];
 }
 const char* nameOf(Reason reason) {
-  static const char* const kNames[kReasons] = {"same frame", "two obstacles", "no motion between them",
+  static const char* const kNames[kReasons] = {"same frame", "two obstacles", "still against each other",
                                                "neighbours", "allowed",       "touch-link",
                                                "scope",      "ignored"};
   return kNames[static_cast<int>(reason)];

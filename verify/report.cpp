@@ -105,6 +105,11 @@ int carrierOf(const World& world, int frame) {
   return frame;
 }
 
+/// For people. (Tolerances and speeds may move what is `still`; its name in JSON stays all the same.)
+std::string wordsFor(Reason reason) {
+  return reason == Reason::still ? "no motion between them" : nameOf(reason);
+}
+
 std::string startOrGoal(const World& world, const Piece& piece, const double* until) {
   std::string line;
   for (std::size_t v = 0; v < world.variables.size(); ++v) {
@@ -161,7 +166,7 @@ std::vector<std::string> linesOf(const World& world) {
                       inQuotes(world.names[static_cast<std::size_t>(pair.second)]) +
                       (reason == Reason::still && give ? " (but tolerances or speeds may move them)" : ""));
     }
-    addList(lines, std::string("not checked, ") + nameOf(reason), pairs);
+    addList(lines, "not checked, " + wordsFor(reason), pairs);
   }
   std::vector<std::string> margins;
   for (const auto& [name, margin] : world.margins)
@@ -276,7 +281,7 @@ std::string notChecked(const Verdict& v) {
   std::string text;
   for (int k = 0; k < kReasons; ++k)
     if (v.not_checked[k] > 0)
-      text += (text.empty() ? "" : ", ") + std::to_string(v.not_checked[k]) + " " + nameOf(static_cast<Reason>(k));
+      text += (text.empty() ? "" : ", ") + std::to_string(v.not_checked[k]) + " " + wordsFor(static_cast<Reason>(k));
   return text;
 }
 

@@ -110,7 +110,10 @@ TEST(VerifyReport, AVerdictIsASentenceOfItsSubject) {
   EXPECT_EQ(lineOf(v, subject),
             "VERIFIED: the robot of 'arm.urdf' moves as 'plan.csv' says among the obstacles of 'cell.stl', and until t "
             "= 0.5 of piece 2 none of 66 pairs of bodies comes within its margin.");
-  EXPECT_EQ(notChecked(v), "5 neighbours, 7 allowed");
+  v.not_checked[static_cast<int>(Reason::still)] = 2;
+  EXPECT_EQ(notChecked(v), "2 no motion between them, 5 neighbours, 7 allowed");
+  EXPECT_NE(verdictAsJson(v).find("\"still against each other\": 2, \"neighbours\": 5"), std::string::npos)
+      << "names in JSON stay";
   EXPECT_EQ(notChecked(Verdict()), "");
 }
 
