@@ -155,7 +155,7 @@ Carrier FrameSweep::cross(const Carrier& from, JointId id, bool down) {
     const JointFactor& factor = factors[f];
     const int parent = to.step;
     // A step comes after its parent; in a chain, it is the next one.
-    const auto known = std::find_if(origin_.begin() + parent + 1, origin_.end(), [&](const Origin& o) {
+    const auto known = std::find_if(origin_.begin() + (parent + 1), origin_.end(), [&](const Origin& o) {
       return o.parent == parent && o.joint == id && o.factor == f && o.down == down;
     });
     if (known != origin_.end()) {
