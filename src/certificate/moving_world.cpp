@@ -7,7 +7,7 @@
 
 #include "numerics/baseline_isa.h"
 
-#include "convex/cloud.h"
+#include "convex/piece_kinds.h"
 
 namespace fcl_artic::certificate {
 namespace {
@@ -288,16 +288,13 @@ double largestDistance(const Geometry& geometry, std::int32_t node, const Vector
   while (open > 0) {
     const Open next = stack[--open];
     if (next.upper <= most) continue;
-    baseline::NodeRoom room, room_left, room_right;
-    const engine::Node& n = baseline::nodeOf(tree, next.node, room);
+    const engine::Node& n = tree.nodes[next.node];
     if (n.isLeaf()) {
-      baseline::PieceRoom piece;
-      forEachEnd(tree, baseline::pieceOf(tree, n.piece(), piece),
+      forEachEnd(tree, tree.pieces[n.piece()],
                  [&](const Vector3d& x, double radius) { most = std::max(most, distance(x) + radius); });
       continue;
     }
-    Open left = {n.left(), upper(baseline::nodeOf(tree, n.left(), room_left))},
-         right = {n.right(), upper(baseline::nodeOf(tree, n.right(), room_right))};
+    Open left = {n.left(), upper(tree.nodes[n.left()])}, right = {n.right(), upper(tree.nodes[n.right()])};
     if (left.upper > right.upper) std::swap(left, right);
     stack[open++] = left;
     stack[open++] = right;
@@ -331,11 +328,9 @@ Vector3d farthest(const Geometry& geometry, std::int32_t node, const Vector3d& u
   while (open > 0) {
     const Open next = stack[--open];
     if (next.upper <= most) continue;
-    baseline::NodeRoom room, room_left, room_right;
-    const engine::Node& n = baseline::nodeOf(tree, next.node, room);
+    const engine::Node& n = tree.nodes[next.node];
     if (n.isLeaf()) {
-      baseline::PieceRoom piece;
-      const Vec3 p = farthestOfPiece(tree, baseline::pieceOf(tree, n.piece(), piece), d, length);
+      const Vec3 p = farthestOfPiece(tree, tree.pieces[n.piece()], d, length);
       const double value = dot(d, p);
       if (value > most) {
         most = value;
@@ -343,8 +338,7 @@ Vector3d farthest(const Geometry& geometry, std::int32_t node, const Vector3d& u
       }
       continue;
     }
-    Open left = {n.left(), upper(baseline::nodeOf(tree, n.left(), room_left))},
-         right = {n.right(), upper(baseline::nodeOf(tree, n.right(), room_right))};
+    Open left = {n.left(), upper(tree.nodes[n.left()])}, right = {n.right(), upper(tree.nodes[n.right()])};
     if (left.upper > right.upper) std::swap(left, right);
     stack[open++] = left;
     stack[open++] = right;

@@ -13,7 +13,7 @@
 
 #include "numerics/baseline_isa.h"
 
-#include "convex/cloud.h"
+#include "convex/piece_kinds.h"
 #include "setup/neighbour_findings.h"
 
 namespace fcl_artic::certificate {
@@ -199,13 +199,11 @@ int addFrames(const std::string& name, const BodyMotion& motion, World& world) {
 /// Numbers of the tree's pieces in the order of its leaves, from the left.
 void addLeaves(const TreeView& tree, std::int32_t node, Geometry& geometry) {
   const auto begin = static_cast<std::int32_t>(geometry.order.size());
-  baseline::NodeRoom room;
-  const Node& at = baseline::nodeOf(tree, node, room);
-  if (at.isLeaf()) {
-    geometry.order.push_back(at.piece());
+  if (tree.nodes[node].isLeaf()) {
+    geometry.order.push_back(tree.nodes[node].piece());
   } else {
-    addLeaves(tree, at.left(), geometry);
-    addLeaves(tree, at.right(), geometry);
+    addLeaves(tree, tree.nodes[node].left(), geometry);
+    addLeaves(tree, tree.nodes[node].right(), geometry);
   }
   geometry.below[static_cast<std::size_t>(node)] = {begin, static_cast<std::int32_t>(geometry.order.size())};
 }
@@ -595,7 +593,8 @@ class ManagedWorld {
 
 Geometry::Geometry(std::shared_ptr<const ShapeTree> shape_in) : shape(std::move(shape_in)) {
   const TreeView& tree = shape->view();
-  below.resize(static_cast<std::size_t>(tree.endOfNodes()));
+  if (tree.balls) return;  // World::missing: no certificate states a cloud
+  below.resize(static_cast<std::size_t>(tree.num_nodes));
   addLeaves(tree, 0, *this);
   unbounded = baseline::unbounded(tree.pieces[0]);
   radius = unbounded ? 0 : tree.extent;

@@ -29,7 +29,8 @@ FCL_ARTIC_INLINE double radiusOfBall(const TreeView& cloud, int ball) {
 }
 
 /// Some balls of a cluster, side by side, and the left child of the node over them. The nodes over n balls take
-/// 2 (n - 1) numbers, from that child's on. Counted from the cluster's first ball, and from the left child of its node.
+/// 2 (n - 1) numbers, from that child's on. Balls are counted from the cluster's first one, nodes from the left child
+/// of the cluster's node.
 struct BallRange {
   std::uint8_t first, count, child;
 };
@@ -91,23 +92,33 @@ inline Node nodeOverBalls(const TreeView& cloud, int first, int count, int child
   return node;
 }
 
-/// Whether the tree stores no nodes below this one.
+/// Whether the tree stores no nodes below a node that it stores.
 FCL_ARTIC_INLINE bool isCluster(const TreeView& tree, const Node& node) {
   return tree.balls && node.child >= tree.num_nodes;
 }
 
-/// The node with this number, below a cluster.
-inline Node nodeBelowCluster(const TreeView& cloud, int node) {
+/// The balls under a node below a cluster, and the number of its left child.
+struct BallsOfNode {
+  int first, count, child;
+};
+inline BallsOfNode ballsBelowCluster(const TreeView& cloud, int node) {
   const int ball = (node - cloud.num_nodes) / 2, first = ball - cloud.balls[ball].place;
   const int numbers = cloud.num_nodes + 2 * first;
   const BallRange& range = kClusterNodes.below[cloud.balls[ball].cluster_size][node - numbers];
-  return nodeOverBalls(cloud, first + range.first, range.count, numbers + range.child);
+  return {first + range.first, range.count, numbers + range.child};
 }
 
 /// A node of a tree. It is the tree's own, or lies in `room`.
 FCL_ARTIC_INLINE const Node& nodeOf(const TreeView& tree, int node, NodeRoom& room) {
   if (!tree.balls || node < tree.num_nodes) return tree.nodes[node];
-  return room.node = nodeBelowCluster(tree, node);
+  const BallsOfNode balls = ballsBelowCluster(tree, node);
+  return room.node = nodeOverBalls(tree, balls.first, balls.count, balls.child);
+}
+/// The piece of a leaf; negative: the node with this number is none.
+FCL_ARTIC_INLINE int leafPieceOf(const TreeView& tree, int node) {
+  if (!tree.balls || node < tree.num_nodes) return tree.nodes[node].piece();
+  const BallsOfNode balls = ballsBelowCluster(tree, node);
+  return balls.count == 1 ? balls.first : -1;
 }
 
 inline Piece pieceOfBall(const TreeView& cloud, int ball) {

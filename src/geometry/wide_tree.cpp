@@ -132,7 +132,7 @@ class WideBuilder {
   }
   Node boxAround(const Range& leaves) const {
     Node box = leaves_[leaves.begin];
-    for (std::size_t i = leaves.begin + 1; i < leaves.end; ++i) enclose(box, leaves_[i], box);
+    for (std::size_t i = leaves.begin + 1; i < leaves.end; ++i) baseline::enclose(box, leaves_[i], box);
     return box;
   }
   std::vector<Node>::iterator at(std::size_t i) { return leaves_.begin() + static_cast<std::ptrdiff_t>(i); }

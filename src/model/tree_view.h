@@ -59,9 +59,6 @@ struct TreeView {
   std::int32_t num_nodes = 0;  ///< that are stored; of a cloud, nodes below clusters have numbers from here on
   std::int32_t num_pieces = 0;
   double extent = 0;  ///< largest |p|, radii included: the size that pads scale with
-
-  /// One more than the largest number of a node.
-  std::int32_t endOfNodes() const { return num_nodes + (balls ? 2 * num_pieces : 0); }
 };
 
 /// A box by its ends.

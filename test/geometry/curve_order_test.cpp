@@ -50,7 +50,7 @@ Walk walk(const ShapeTree& tree, const std::vector<Vector3d>& centers, const std
   while (!open.empty()) {
     const auto [me, depth] = open.back();
     open.pop_back();
-    EXPECT_TRUE(me >= 0 && me < view.endOfNodes() && visited.insert(me).second) << me;
+    EXPECT_TRUE(me >= 0 && me < view.num_nodes + 2 * view.num_pieces && visited.insert(me).second) << me;
     found.depth = std::max(found.depth, depth);
     baseline::NodeRoom room;
     const engine::Node& node = baseline::nodeOf(view, me, room);

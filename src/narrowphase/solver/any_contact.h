@@ -213,8 +213,7 @@ inline bool AnyContact::restsFromTheStart(const Entry& e) {
   const Seen seen = motions_.of(e.pair, whole());
   const TreeView &A = seen->a(), &B = seen->b();
   const double shallow = kShallow * seen->smallerRadius();
-  NodeRoom room_a, room_b;
-  if (nodeOf(A, e.a, room_a).isLeaf() && nodeOf(B, e.b, room_b).isLeaf()) return false;
+  if (leafPieceOf(A, e.a) >= 0 && leafPieceOf(B, e.b) >= 0) return false;
   if (e.deep || !NodeHull::exists(A, e.a) || !NodeHull::exists(B, e.b) ||
       depthWithin(traversal_.simplexOf(e)) > shallow)
     return false;

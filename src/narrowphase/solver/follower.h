@@ -50,9 +50,7 @@ struct Candidate {
 /// for instance if the hull's vertices are not the body's own.
 /// @param below  the node to begin at.
 inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool in_a, int below = 0) {
-  NodeRoom room;
-  const Node& top = nodeOf(tree, below, room);
-  if (top.isLeaf()) return top.piece();
+  if (const int piece = leafPieceOf(tree, below); piece >= 0) return piece;
   if (tree.pieces[0].kind != PieceKind::vertices || simplex.n == 0) return -1;
   const auto point = [&](int k) { return in_a ? simplex.v[k].a : simplex.v[k].b; };
   int heaviest = 0;

@@ -128,8 +128,7 @@ class PairSearch : PartOfSolver {
   };
   LeafPair leavesOf(const Entry& e) const {
     const PairParts pair = problem().parts(e.pair);
-    NodeRoom room_a, room_b;
-    return {nodeOf(*body(pair.a).tree, e.a, room_a).piece(), nodeOf(*body(pair.b).tree, e.b, room_b).piece()};
+    return {leafPieceOf(*body(pair.a).tree, e.a), leafPieceOf(*body(pair.b).tree, e.b)};
   }
   Aim aim() const { return horizon_.isFinest() ? Aim::leaves : Aim::split; }
   bool isLeafPair(const Entry& e) const {

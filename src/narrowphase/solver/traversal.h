@@ -123,7 +123,8 @@ class Traversal : PartOfSolver {
  private:
   unsigned traverse(Seen seen, const Entry& root, Aim aim, Buffer<Entry>& open, int begin);
   template <class Push>
-  void divideCluster(Seen seen, const Entry& e, bool in_a, const NodeAt& partner, const Push& push);
+  void divideCluster(Seen seen, const Entry& e, bool in_a, const Node& cluster, const NodeAt& partner,
+                     const Push& push);
   unsigned partsMayTouch(Seen seen, int a, int b, unsigned mask);
   unsigned apartFromUnbounded(Seen seen, const Node& a, const Node& b);
   unsigned apartAcrossRods(Seen seen, const Node& a, const Node& b, unsigned mask);
@@ -365,13 +366,13 @@ inline unsigned Traversal::leavesMayTouch(Seen seen, int piece_a, int piece_b, u
 /// @param in_a  the cluster is a node of A.
 /// @param push  called with an entry of each such ball.
 template <class Push>
-inline void Traversal::divideCluster(Seen seen, const Entry& e, bool in_a, const NodeAt& partner, const Push& push) {
+inline void Traversal::divideCluster(Seen seen, const Entry& e, bool in_a, const Node& cluster, const NodeAt& partner,
+                                     const Push& push) {
   const int side = in_a ? 0 : 1;
   const TreeView& cloud = seen->still(side);
   const SweptBox& swept = seen->sweptNode(side, partner.number, partner.node);
-  const int cluster = in_a ? e.a : e.b;
-  FCL_ARTIC_ASSERT(cluster < cloud.num_nodes);  // nodes below clusters are not come to
-  const int numbers = cloud.nodes[cluster].child, first = (numbers - cloud.num_nodes) / 2;
+  FCL_ARTIC_ASSERT((in_a ? e.a : e.b) < cloud.num_nodes);  // the traversal comes to no inner node below a cluster
+  const int numbers = cluster.child, first = (numbers - cloud.num_nodes) / 2;
   const int size = cloud.balls[first].cluster_size;
   statistics().node_tests += size;
   for (int i = 0; i < size; ++i) {
@@ -448,7 +449,7 @@ inline unsigned Traversal::traverse(Seen seen, const Entry& root, Aim aim, Buffe
     } else {
       const bool split_a = y.isLeaf() || (!x.isLeaf() && x.radius > y.radius);
       if (isCluster(split_a ? A : B, split_a ? x : y)) {
-        divideCluster(seen, e, split_a, split_a ? NodeAt{e.b, y} : NodeAt{e.a, x}, push);
+        divideCluster(seen, e, split_a, split_a ? x : y, split_a ? NodeAt{e.b, y} : NodeAt{e.a, x}, push);
         continue;
       }
       push(split_a ? Entry{e.pair, x.right(), e.b, e.mask} : Entry{e.pair, e.a, y.right(), e.mask});
