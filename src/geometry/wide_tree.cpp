@@ -110,7 +110,7 @@ class WideBuilder {
   }
   /// Makes the largest leaves children by themselves: they would only blow up nodes below.
   void takeLargest(std::size_t count, Range& leaves, std::vector<Range>& children) {
-    std::nth_element(at(leaves.begin), at(leaves.begin + count), at(leaves.end), [](const Node& a, const Node& b) {
+    std::partial_sort(at(leaves.begin), at(leaves.begin + count), at(leaves.end), [](const Node& a, const Node& b) {
       return a.radius > b.radius || (a.radius == b.radius && a.piece() < b.piece());
     });
     for (; count > 0; --count, ++leaves.begin) children.push_back({leaves.begin, leaves.begin + 1});

@@ -89,6 +89,11 @@ inline int pieceAtWitness(const TreeView& tree, const Simplex& simplex, bool in_
   return best;
 }
 
+/// How far the hull around what is below a node reaches beyond the body: not at all for a leaf's own piece.
+inline double loosenessOf(const TreeView& tree, int node, const Piece& hull) {
+  return leafPieceOf(tree, node) >= 0 ? 0 : hull.radius;
+}
+
 /// The pieces of a candidate.
 inline PiecePair piecesOf(const Candidate& f, Seen seen) {
   if (f.isHulls()) return {f.hull_a, *seen->b().outer};
@@ -326,7 +331,8 @@ inline bool Follower::prove(Candidate& f) {
 inline void Follower::proveBelowHulls(Candidate& f) {
   if (!f.have_normal) return;
   const TreeView &A = *body(problem().parts(f.entry.pair).a).tree, &B = *body(problem().parts(f.entry.pair).b).tree;
-  if (f.hull_a.radius + B.outer->radius > f.speed * query().tolerance_time) return;
+  const double loose = loosenessOf(A, f.entry.a, f.hull_a) + loosenessOf(B, f.entry.b, *B.outer);
+  if (loose > f.speed * query().tolerance_time) return;
   Candidate below = f;
   below.target = Candidate::Target::leafPair;
   below.piece_a = pieceAtWitness(A, f.simplex, true, f.entry.a);

@@ -13,8 +13,8 @@
 //    Each patch of a large body is tested by itself: its piece, or its box, against the link's hull.
 // 2. search(): a problem of one pair, as the drop-in asks it, is followed from its first open part to its last at
 //    once. For many pairs descendIntoPieces() traverses their trees over the first batch, and solveLane() takes the
-//    parts one after the other. Before that, decideByHulls() follows hulls of bodies that move little in a part to
-//    where they meet: the pieces of most meet there, too.
+//    parts one after the other. Bodies that move little in a part are looked at by decideByHulls() first: it follows
+//    their hulls to where these meet. Most bodies' pieces meet there, too.
 // 3. solveLane() follows the hulls of each pair to where they meet (Follower::followToRoot()): certificates up to
 //    the first root of the gap's bound, then a new direction from there. Two directions show how they turn, and the
 //    next certificate's turns likewise: the steps of a secant method.
@@ -346,7 +346,7 @@ inline void PairSearch::testHulls(Buffer<Entry>& open, const StageOne& stage_one
     if (n + 2 < roots) {  // what the one after the next needs first
       const TreeView& tree = *body(problem().parts(open[order.size() ? order[n + 2] : n + 2].pair).a).tree;
       prefetch(tree.nodes);
-      prefetch(tree.outer);
+      if (tree.outer) prefetch(tree.outer);
     }
     if (e.mask & horizon_.live()) {
       const Seen seen = motions_.of(e.pair, whole());
@@ -390,8 +390,7 @@ inline void PairSearch::search(const Buffer<Entry>& open, int begin, int end) {
   stack_.clear();
   if (problem().num_movers == 0 && end - begin == 1) {
     // A problem of one pair needs no order among pairs: it is followed from its first open lane to its last. (Where
-    // stage 1 or 2 has left one of many, it goes the way of the others: what they discard is not to change an
-    // answer's bits.)
+    // stage 1 or 2 has left one of many, it goes the way of the others.)
     const Entry& e = open[begin];
     if (isLeafPair(e) || (haveHulls(e) && movesFar(motions_.of(e.pair, whole())))) {
       const unsigned lanes = e.mask;
@@ -409,17 +408,17 @@ inline void PairSearch::search(const Buffer<Entry>& open, int begin, int end) {
 
 /// Follows the hulls of two bodies that move little in a lane to where they meet, before the first batch looks at their
 /// pieces. Where bodies are convex there, pieces meet at the same time: if that is proven, it is recorded. Lanes that
-/// end before the hulls meet are free. (So first contacts of a Panda with itself take a fifth of the time. Hulls whose
-/// vertices are not the bodies' own are not worth it.)
+/// end before the hulls meet are free. (So first contacts of a Panda with itself take a fifth of the time. Hulls that
+/// reach farther beyond their bodies than these move within the tolerance are not worth it.)
 /// @param e  keeps the lanes that are undecided.
 inline void PairSearch::decideByHulls(Entry& e) {
   const unsigned live = e.mask & horizon_.live();
-  const bool first_is_live = (live & (~e.mask + 1)) != 0;
-  if (!first_is_live || !e.isWhole() || e.within || !isFollowed(e)) return;
+  if (!live || !e.isWhole() || e.within || !isFollowed(e) || horizon_.mustEnd()) return;
   const Seen seen = motions_.of(e.pair, whole());
   const double speed = seen->amplitude() / whole().d;
   if (movesFar(seen)) return;  // solveLane() follows their hulls
-  if (seen->a().outer->radius + seen->b().outer->radius > speed * query().tolerance_time) return;
+  const double loose = loosenessOf(seen->a(), 0, *seen->a().outer) + loosenessOf(seen->b(), 0, *seen->b().outer);
+  if (loose > speed * query().tolerance_time) return;
   const auto keepFrom = [&](double t) { e.mask &= ~((1u << static_cast<int>(kLanes * t)) - 1); };
   const double stop = 0.125 * (32 - __builtin_clz(live));
   Candidate f = hullsOf(e, 0.125 * __builtin_ctz(e.mask));
