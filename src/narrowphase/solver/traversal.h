@@ -371,6 +371,14 @@ inline void Traversal::divideCluster(Seen seen, const Entry& e, bool in_a, const
   const int side = in_a ? 0 : 1;
   const TreeView& cloud = seen->still(side);
   const SweptBox& swept = seen->sweptNode(side, partner.number, partner.node);
+  unsigned open = e.mask;
+  if (seen->witness() && partner.node.isLeaf()) {
+    PieceRoom room;
+    const Piece box = boxOf(cluster), &piece = pieceOf(seen->moving(side), partner.node.piece(), room);
+    open &= ~(in_a ? separated(seen->side(0), box, piece, *seen->witness(), open)
+                   : separated(seen->side(0), piece, box, *seen->witness(), open));
+    if (!open) return;
+  }
   FCL_ARTIC_ASSERT((in_a ? e.a : e.b) < cloud.num_nodes);  // the traversal comes to no inner node below a cluster
   const int numbers = cluster.child, first = (numbers - cloud.num_nodes) / 2;
   const int size = cloud.balls[first].cluster_size;
@@ -380,7 +388,7 @@ inline void Traversal::divideCluster(Seen seen, const Entry& e, bool in_a, const
     boundBall(cloud, first + i, lower, upper);
     Node ball;
     setBox(lower, upper, ball);
-    const unsigned mask = e.mask & ~apart(swept, ball);
+    const unsigned mask = open & ~apart(swept, ball);
     if (!mask) continue;
     const int number = numbers + kClusterNodes.leaf[size][i];
     push(in_a ? Entry{e.pair, number, e.b, mask} : Entry{e.pair, e.a, number, mask});
