@@ -362,7 +362,8 @@ inline unsigned Traversal::leavesMayTouch(Seen seen, int piece_a, int piece_b, u
 }
 
 /// Pushes the balls of a cluster whose boxes may meet the swept box of a partner. (To divide it by halves takes
-/// longer.)
+/// longer.) Before that, the last direction found is tried on the cluster's box: free motions amid 10^6 points take 2/3
+/// of the time so.
 /// @param in_a  the cluster is a node of A.
 /// @param push  called with an entry of each such ball.
 template <class Push>
