@@ -43,8 +43,8 @@ struct ClusterNodes {
   constexpr ClusterNodes() {
     for (std::uint8_t size = 2; size <= engine::kMaxClusterSize; ++size) {
       divide({0, size, 0}, below[size]);
-      for (std::uint8_t i = 0; i < 2 * (size - 1); ++i) {
-        if (below[size][i].count == 1) leaf[size][below[size][i].first] = i;
+      for (int i = 0; i < 2 * (size - 1); ++i) {
+        if (below[size][i].count == 1) leaf[size][below[size][i].first] = static_cast<std::uint8_t>(i);
       }
     }
   }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <set>
 #include <string>
@@ -77,7 +76,7 @@ Walk walk(const ShapeTree& tree, const std::vector<Vector3d>& centers, const std
       continue;
     }
     ++seen[i];
-    EXPECT_EQ(std::memcmp(ball.center, centers[i].data(), sizeof ball.center), 0);
+    EXPECT_EQ(Vector3d::Map(ball.center), centers[i]);
     EXPECT_EQ(ball.radius, radii[radii.size() == 1 ? 0 : i]);
     EXPECT_GE(ball.reach, centers[i].norm());
     for (int k = 0; k < 3; ++k) {
