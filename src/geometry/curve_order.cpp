@@ -25,7 +25,7 @@ constexpr int kBits = 10;
 constexpr std::size_t kFewInACell = 256;
 constexpr int kMostCells = 3;
 /// From this number of points on the work goes over threads, which wait for each other at each digit.
-constexpr std::size_t kManyPoints = 1 << 17;
+constexpr std::size_t kManyPoints = 1 << 16;
 
 struct PlaceBox {
   Eigen::Array3d lo = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity()), hi = -lo;
