@@ -78,22 +78,18 @@ class CloudBuilder {
   Node& at(std::int32_t node) { return tree_.nodes[static_cast<std::size_t>(node)]; }
 
   /// Divides the cloud into parts, and numbers the nodes above them: the children of the i-th are 2 + 2 i and the next.
-  void divide(CurveOrder::Range range, std::size_t size, std::int32_t node = 0) {
+  void divide(const CurveOrder::Range& range, std::size_t size, std::int32_t node = 0) {
     if (range.size() <= size) return parts_.push_back({range, node, 0, {}});
     const auto left = static_cast<std::int32_t>(2 + 2 * above_.size());
     above_.push_back(node);
-    const auto [first, second] = split(range);
+    const auto [first, second] = order_.split(range);
     divide(first, size, left);
     divide(second, size, left + 1);
   }
-  std::pair<CurveOrder::Range, CurveOrder::Range> split(CurveOrder::Range& range) {
-    const std::size_t middle = order_.split(range);
-    return {{range.begin, middle, range.cells}, {middle, range.end, range.cells}};
-  }
   /// Builds what is below a node, and returns that node.
-  Node build(CurveOrder::Range range, std::vector<Node>& nodes) {
+  Node build(const CurveOrder::Range& range, std::vector<Node>& nodes) {
     if (range.size() <= engine::kMaxClusterSize) return buildCluster(range);
-    const auto [first, second] = split(range);
+    const auto [first, second] = order_.split(range);
     const std::size_t left = nodes.size();
     nodes.resize(left + 2);
     const Node a = build(first, nodes), b = build(second, nodes);

@@ -140,7 +140,13 @@ void CurveOrder::layCells(Range range, int threads) {
   });
 }
 
-std::size_t CurveOrder::split(Range& range) {
+std::pair<CurveOrder::Range, CurveOrder::Range> CurveOrder::split(Range range) {
+  const std::size_t middle = endOfFirstPart(range);
+  return {{range.begin, middle, range.cells}, {middle, range.end, range.cells}};
+}
+
+/// Where the range is to be split; it may get finer cells.
+std::size_t CurveOrder::endOfFirstPart(Range& range) {
   FCL_ARTIC_ASSERT(range.size() > 1);
   if (places_[range.begin].key == places_[range.end - 1].key) {
     if (range.size() <= kFewInACell || range.cells == kMostCells) return splitAtMiddle(range);

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "geometry/large_array.h"
 
@@ -41,10 +42,10 @@ class CurveOrder {
 
   /// All points.
   Range all() const { return {0, places_.size(), 0}; }
-  /// The end of the range's first part; the range has two points at least. A range must be split before its parts
+  /// The two parts of a range, which has two points at least. A range must be split before its parts
   /// are, and once only, as this may put its points into another order. Two threads may split ranges that have no point
   /// in common.
-  std::size_t split(Range& range);
+  std::pair<Range, Range> split(Range range);
   /// Orders the points of a range that is split no further: so that its halves, theirs, and so on, are near each other
   /// where split() would not tell them apart.
   void finish(Range range);
@@ -53,6 +54,7 @@ class CurveOrder {
 
  private:
   void layCells(Range range, int threads);
+  std::size_t endOfFirstPart(Range& range);
   std::size_t splitAtMiddle(Range range);
 
   const PointsAt points_;

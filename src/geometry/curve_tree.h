@@ -37,7 +37,6 @@ class CurveBuilder {
         threads_(size < kManyPieces ? 1 : threads),
         pieces_(pieces),
         nodes_(nodes) {
-    // Parts of a size that stays in a processor's memory: pieces that are put there are read again at once.
     divide({0, order_.all()}, std::max(kFewPieces, size / 256));
   }
   /// The tree over pieces that are where they belong.
@@ -55,19 +54,18 @@ class CurveBuilder {
     std::size_t child = 2;  ///< its left one; those of the nodes below follow
   };
   /// The two children, the left one first. A node over n pieces takes 2 (n - 1) nodes below it.
-  std::pair<Below, Below> split(Below& at) {
-    const std::size_t middle = order_.split(at.range);
-    const CurveOrder::Range left{at.range.begin, middle, at.range.cells}, right{middle, at.range.end, at.range.cells};
+  std::pair<Below, Below> split(const Below& at) {
+    const auto [left, right] = order_.split(at.range);
     return {{at.child, left, at.child + 2}, {at.child + 1, right, at.child + 2 * left.size()}};
   }
-  void divide(Below at, std::size_t part) {
+  void divide(const Below& at, std::size_t part) {
     if (at.range.size() <= part) return parts_.push_back(at);
     above_.push_back(at);
     const auto [left, right] = split(at);
     divide(left, part);
     divide(right, part);
   }
-  void build(Below at) {
+  void build(const Below& at) {
     if (at.range.size() == 1) {
       const std::uint32_t piece = order_.number(at.range.begin);
       nodes_[at.node] = baseline::makeLeaf(measure_(pieces_[piece]), static_cast<std::int32_t>(piece));

@@ -19,6 +19,7 @@
 #include "expect.h"
 #include "fcl_artic/point_cloud.h"
 #include "meshes.h"
+#include "own_kinematics.h"
 
 namespace carried_bodies_test {
 
@@ -107,20 +108,7 @@ struct World {
   Large large;
   std::unique_ptr<ArticulatedCollisionManager> manager;
 
-  std::vector<Isometry3d> poses(const VectorXd& q) const {
-    std::vector<Isometry3d> all = {Isometry3d::Identity()};
-    for (std::size_t i = 0; i < joints.size(); ++i) {
-      Isometry3d moved = Isometry3d::Identity();
-      const double x = q[static_cast<Eigen::Index>(i)];
-      if (joints[i].type == JointType::prismatic) {
-        moved.translation() = x * joints[i].axis;
-      } else {
-        moved.linear() = Eigen::AngleAxisd(x, joints[i].axis).toRotationMatrix();
-      }
-      all.push_back(all[static_cast<std::size_t>(parents[i])] * joints[i].origin * moved);
-    }
-    return all;
-  }
+  std::vector<Isometry3d> poses(const VectorXd& q) const { return linkPoses(joints, parents, q); }
   /// Whether queries check the large body and this one.
   bool isChecked(const Other& other) const {
     if (large.allowed.count(other.name)) return false;

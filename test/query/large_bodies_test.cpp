@@ -19,6 +19,7 @@
 #include "arms.h"
 #include "expect.h"
 #include "fcl_artic/point_cloud.h"
+#include "own_kinematics.h"
 #include "solid_meshes.h"
 
 namespace large_bodies_test {
@@ -233,20 +234,7 @@ struct World {
   std::vector<std::shared_ptr<fcl::CollisionObjectd>> pieces;
 
   /// Poses of all links.
-  std::vector<Isometry3d> poses(const VectorXd& q) const {
-    std::vector<Isometry3d> all = {Isometry3d::Identity()};
-    for (std::size_t i = 0; i < joints.size(); ++i) {
-      Isometry3d moved = Isometry3d::Identity();
-      const double x = q[static_cast<Eigen::Index>(i)];
-      if (joints[i].type == JointType::prismatic) {
-        moved.translation() = x * joints[i].axis;
-      } else {
-        moved.linear() = Eigen::AngleAxisd(x, joints[i].axis).toRotationMatrix();
-      }
-      all.push_back(all[static_cast<std::size_t>(parents[i])] * joints[i].origin * moved);
-    }
-    return all;
-  }
+  std::vector<Isometry3d> poses(const VectorXd& q) const { return linkPoses(joints, parents, q); }
   /// The limb's pose as seen from the large body, in units.
   Isometry3d unitPose(const Limb& limb, const std::vector<Isometry3d>& links) const {
     Isometry3d X = place.inverse() * links[static_cast<std::size_t>(limb.link)] * limb.offset;

@@ -73,6 +73,12 @@ struct Window {
   double end() const { return start + width; }
 };
 
+/// From the first to the last of some lanes of the first batch.
+inline Window windowOf(unsigned lanes) {
+  const int first = __builtin_ctz(lanes);
+  return {0.125 * first, 0.125 * (32 - __builtin_clz(lanes) - first)};
+}
+
 /// Entries begin to end of a list that are open in one lane of their batch; lane -1: all of them.
 struct Selection {
   const Buffer<Entry>& list;
@@ -393,9 +399,7 @@ inline void PairSearch::search(const Buffer<Entry>& open, int begin, int end) {
     // stage 1 or 2 has left one of many, it goes the way of the others.)
     const Entry& e = open[begin];
     if (isLeafPair(e) || (haveHulls(e) && movesFar(motions_.of(e.pair, whole())))) {
-      const unsigned lanes = e.mask;
-      const double start = 0.125 * __builtin_ctz(lanes), stop = 0.125 * (32 - __builtin_clz(lanes));
-      return solveLane({open, begin, end, -1}, {start, stop - start}, contacts_.watchFrom(e.pair) > 0 ? 0 : lanes);
+      return solveLane({open, begin, end, -1}, windowOf(e.mask), contacts_.watchFrom(e.pair) > 0 ? 0 : e.mask);
     }
   }
   descendIntoPieces(open, begin, end);
@@ -420,9 +424,9 @@ inline void PairSearch::decideByHulls(Entry& e) {
   const double loose = loosenessOf(seen->a(), 0, *seen->a().outer) + loosenessOf(seen->b(), 0, *seen->b().outer);
   if (loose > speed * query().tolerance_time) return;
   const auto keepFrom = [&](double t) { e.mask &= ~((1u << static_cast<int>(kLanes * t)) - 1); };
-  const double stop = 0.125 * (32 - __builtin_clz(live));
-  Candidate f = hullsOf(e, 0.125 * __builtin_ctz(e.mask));
-  if (follower_.followToRoot(f, stop, false)) return keepFrom(stop);
+  const Window window = windowOf(live);
+  Candidate f = hullsOf(e, window.start);
+  if (follower_.followToRoot(f, window.end(), false)) return keepFrom(window.end());
   if (!f.certain) follower_.proveBelowHulls(f);
   if (!f.certain) return keepFrom(f.t_lower);
   e.mask = 0;
