@@ -8,8 +8,8 @@
 #include <string>
 #include <unordered_map>
 
+#include "opengl/functions.h"
 #include "shaders.h"
-#include "visibility/opengl.h"
 
 namespace fcl_artic::render {
 namespace {
@@ -24,8 +24,8 @@ constexpr float kCreaseCosine = 0.77f;  // edges sharper than 40 degrees stay sh
 constexpr float kSeeThrough = 0.38f;    // of the robot behind obstacles
 
 /// OpenGL of the renderer at work on this thread.
-thread_local const visibility::GlFunctions* bound = nullptr;
-const visibility::GlFunctions& api() {
+thread_local const opengl::Functions* bound = nullptr;
+const opengl::Functions& api() {
   return *bound;
 }
 
@@ -280,7 +280,7 @@ std::shared_ptr<const Surface> makeSurface(const Triangles& triangles) {
 
 struct Renderer::Impl {
   std::unique_ptr<OffscreenContext> context = openContext();
-  std::unique_ptr<visibility::GlFunctions> functions;
+  std::unique_ptr<opengl::Functions> functions;
 
   struct Programs {
     Program depth{shaders::kBodyVertex, shaders::kEmptyFragment};
@@ -303,7 +303,7 @@ struct Renderer::Impl {
   Impl() {
     context->makeCurrent();
     try {
-      functions = std::make_unique<visibility::GlFunctions>(*context);
+      functions = std::make_unique<opengl::Functions>(*context);
       bound = functions.get();
       api().GenVertexArrays(1, &empty_array);
       api().PixelStorei(GL_PACK_ALIGNMENT, 1);

@@ -15,6 +15,7 @@
 #include "fcl_artic/visibility.h"
 
 namespace fcl_artic {
+class OffscreenContext;
 namespace visibility {
 
 constexpr int kViews = 3, kLargestResolution = 128;
@@ -100,6 +101,10 @@ class Executor {
 
 /// Scan conversion of the footprints: no OpenGL, the same bits each time, and no more drawn than the answer needs.
 FCL_ARTIC_EXPORT std::unique_ptr<Executor> makeCpuExecutor();
+/// The rule in OpenGL 4.3 (component `visibility`): the views side by side, one draw of what is swept, one of the
+/// pieces, one read.
+/// @throws std::runtime_error when a shader or buffer can't be had.
+std::unique_ptr<Executor> makeOpenGlExecutor(std::unique_ptr<OffscreenContext> context);
 
 /// Has a culler's executor draw; the executor cpu, if there is none or if it fails.
 /// @return the name of the executor that did.

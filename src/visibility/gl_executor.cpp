@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "opengl/functions.h"
 #include "visibility/executor.h"
-#include "visibility/opengl.h"
 
 namespace fcl_artic {
 namespace visibility {
@@ -82,7 +82,7 @@ struct Current {
   ~Current() { context.release(); }
   Current(const Current&) = delete;
   Current& operator=(const Current&) = delete;
-  const std::lock_guard<std::mutex> turn{openGlMutex()};
+  const std::lock_guard<std::mutex> turn{opengl::turns()};
   OffscreenContext& context;
 };
 
@@ -90,7 +90,7 @@ class GlExecutor : public Executor {
  public:
   explicit GlExecutor(std::unique_ptr<OffscreenContext> context) : context_(std::move(context)) {
     const Current current(*context_);
-    gl_ = std::make_unique<GlFunctions>(*context_);
+    gl_ = std::make_unique<opengl::Functions>(*context_);
     swept_program_ = gl_->program(kVertex, kSweptFragment);
     piece_program_ = gl_->program(kVertex, kPieceFragment);
     gl_->GenVertexArrays(1, &array_);
@@ -132,7 +132,7 @@ class GlExecutor : public Executor {
   /// @return for each footprint of a piece, 0: no fragment counts.
   std::vector<std::uint32_t> drawAll(int resolution) const {
     const Current current(*context_);
-    const GlFunctions& gl = *gl_;
+    const opengl::Functions& gl = *gl_;
     const GLfloat nothing[4] = {kNothing, kNothing, 0, 0};
     gl.BindVertexArray(array_);
     gl.Viewport(0, 0, kViews * resolution, resolution);
@@ -162,7 +162,7 @@ class GlExecutor : public Executor {
   /// Draws some of the pieces' footprints.
   /// @param[out] flags  of these.
   void drawPieces(std::size_t first, std::size_t count, std::uint32_t* flags) const {
-    const GlFunctions& gl = *gl_;
+    const opengl::Functions& gl = *gl_;
     const std::vector<std::uint32_t> none(count, 0);
     const auto bytes = static_cast<GLsizeiptr>(count * sizeof flags[0]);
     gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, buffers_[1]);
@@ -181,7 +181,7 @@ class GlExecutor : public Executor {
   }
 
   std::unique_ptr<OffscreenContext> context_;  // with it all of its objects go
-  std::unique_ptr<GlFunctions> gl_;
+  std::unique_ptr<opengl::Functions> gl_;
   GLuint swept_program_ = 0, piece_program_ = 0, array_ = 0;
   GLuint intervals_ = 0;                   ///< a texture: the swept interval of each pixel
   GLuint buffers_[2], targets_[2];         ///< footprints and flags; for the intervals, and for no colour
@@ -191,14 +191,17 @@ class GlExecutor : public Executor {
 
 }  // namespace
 
-std::mutex& openGlMutex() {
-  static std::mutex mutex;
-  return mutex;
-}
-
-std::unique_ptr<Executor> makeGlExecutor(std::unique_ptr<OffscreenContext> context) {
+std::unique_ptr<Executor> makeOpenGlExecutor(std::unique_ptr<OffscreenContext> context) {
   return std::make_unique<GlExecutor>(std::move(context));
 }
 
 }  // namespace visibility
+
+std::shared_ptr<const VisibilityCuller> makeOffscreenCuller(OffscreenBackend backend,
+                                                            const VisibilityOptions& options) {
+  const std::string name = backend == OffscreenBackend::osmesa ? "osmesa" : "egl";
+  return std::make_shared<VisibilityCuller>(
+      options, name, [backend] { return visibility::makeOpenGlExecutor(OffscreenContext::create(backend, 4, 3)); });
+}
+
 }  // namespace fcl_artic

@@ -14,7 +14,7 @@
 
 #include "adversary.h"
 #ifdef FCL_ARTIC_HAS_OFFSCREEN
-#include "visibility/opengl.h"
+#include "fcl_artic/visibility/offscreen.h"
 #endif
 
 namespace executors_test {
@@ -34,7 +34,7 @@ std::uint64_t fromEnvironment(const char* name, std::uint64_t usual) {
 std::unique_ptr<Executor> make(const std::string& name) {
 #ifdef FCL_ARTIC_HAS_OFFSCREEN
   const OffscreenBackend backend = name == "osmesa" ? OffscreenBackend::osmesa : OffscreenBackend::egl;
-  if (name != "cpu") return visibility::makeGlExecutor(OffscreenContext::create(backend, 4, 3));
+  if (name != "cpu") return visibility::makeOpenGlExecutor(OffscreenContext::create(backend, 4, 3));
 #endif
   return visibility::makeCpuExecutor();
 }
@@ -228,7 +228,7 @@ TEST_P(Contexts, OfFourThreadsOneIsAtWorkAtATime) {
   std::vector<std::thread> threads;
   for (std::uint64_t t = 0; t < 4; ++t) {
     threads.emplace_back([&, t] {
-      const auto executor = visibility::makeGlExecutor(std::make_unique<CountedContext>(GetParam(), now, most));
+      const auto executor = visibility::makeOpenGlExecutor(std::make_unique<CountedContext>(GetParam(), now, most));
       wrong += countCulls(*executor, drawingOf(16), 10 + t, 0, 4000);
       culled += countCulls(*executor, drawingOf(16), 10 + t, 0, 1000, 4);
     });

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// OpenGL's functions as a context gives them, for the executor and for pictures: nothing is linked.
+// OpenGL's functions as a context gives them, for stage 2 and for pictures: nothing is linked.
 #pragma once
 
 #include <initializer_list>
-#include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <string>
@@ -16,19 +15,15 @@
 #include "fcl_artic/visibility/offscreen.h"
 
 namespace fcl_artic {
-namespace visibility {
+namespace opengl {
 
 /// Held while an OpenGL context is made, used or destroyed: one of the library's contexts is at work at a time. (Mesa's
 /// software rasteriser reads, without a lock, what other contexts of a display are drawing; doc/VISIBILITY.md,
 /// "Contexts".)
-std::mutex& openGlMutex();
-
-/// The rule in OpenGL 4.3: the views side by side, one draw of what is swept, one of the pieces, one read.
-/// @throws std::runtime_error when a shader or buffer can't be had.
-std::unique_ptr<Executor> makeGlExecutor(std::unique_ptr<OffscreenContext> context);
+std::mutex& turns();
 
 /// One context's functions, under their names without "gl".
-struct GlFunctions {
+struct Functions {
 // clang-format off
 #define FCL_ARTIC_GL_FUNCTIONS(X)                                                                                     \
   X(ActiveTexture) X(AttachShader) X(BindBuffer) X(BindBufferBase) X(BindFramebuffer) X(BindTexture)                  \
@@ -48,7 +43,7 @@ struct GlFunctions {
 
   /// @param context  is current.
   /// @throws std::runtime_error naming a function that is missing.
-  explicit GlFunctions(const OffscreenContext& context) {
+  explicit Functions(const OffscreenContext& context) {
 // NOLINTBEGIN(bugprone-macro-parentheses): the name of a member
 #define FCL_ARTIC_GL_LOAD(name)                                          \
   name = reinterpret_cast<decltype(name)>(context.function("gl" #name)); \
@@ -83,5 +78,5 @@ struct GlFunctions {
   }
 };
 
-}  // namespace visibility
+}  // namespace opengl
 }  // namespace fcl_artic

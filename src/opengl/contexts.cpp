@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// OpenGL without a window: contexts of OSMesa and EGL, and a culler that draws with them.
+// OpenGL without a window: contexts of OSMesa and EGL.
 #include "fcl_artic/visibility/offscreen.h"
 
 #include <dlfcn.h>
@@ -10,8 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "visibility/executor.h"
-#include "visibility/opengl.h"
+#include "opengl/functions.h"
 
 #define EGL_NO_X11
 #include <EGL/egl.h>
@@ -66,7 +65,7 @@ class OsmesaContext : public OffscreenContext {
     if (!context_) throw noVersion("OSMesa", major, minor);
   }
   ~OsmesaContext() override {
-    const std::lock_guard<std::mutex> turn(visibility::openGlMutex());
+    const std::lock_guard<std::mutex> turn(opengl::turns());
     osmesa().DestroyContext(context_);
   }
   void makeCurrent() override {
@@ -150,7 +149,7 @@ class EglContext : public OffscreenContext {
     if (context_ == EGL_NO_CONTEXT) throw noVersion("EGL", major, minor);
   }
   ~EglContext() override {
-    const std::lock_guard<std::mutex> turn(visibility::openGlMutex());
+    const std::lock_guard<std::mutex> turn(opengl::turns());
     egl_.DestroyContext(egl_.display, context_);
     egl_.leaveThread();
   }
@@ -189,17 +188,15 @@ class EglContext : public OffscreenContext {
 
 }  // namespace
 
-std::unique_ptr<OffscreenContext> OffscreenContext::create(OffscreenBackend backend, int major, int minor) {
-  const std::lock_guard<std::mutex> turn(visibility::openGlMutex());
-  if (backend == OffscreenBackend::osmesa) return std::make_unique<OsmesaContext>(major, minor);
-  return std::make_unique<EglContext>(major, minor);
+std::mutex& opengl::turns() {
+  static std::mutex mutex;
+  return mutex;
 }
 
-std::shared_ptr<const VisibilityCuller> makeOffscreenCuller(OffscreenBackend backend,
-                                                            const VisibilityOptions& options) {
-  const std::string name = backend == OffscreenBackend::osmesa ? "osmesa" : "egl";
-  return std::make_shared<VisibilityCuller>(
-      options, name, [backend] { return visibility::makeGlExecutor(OffscreenContext::create(backend, 4, 3)); });
+std::unique_ptr<OffscreenContext> OffscreenContext::create(OffscreenBackend backend, int major, int minor) {
+  const std::lock_guard<std::mutex> turn(opengl::turns());
+  if (backend == OffscreenBackend::osmesa) return std::make_unique<OsmesaContext>(major, minor);
+  return std::make_unique<EglContext>(major, minor);
 }
 
 }  // namespace fcl_artic
