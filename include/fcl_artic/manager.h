@@ -168,7 +168,8 @@ class FCL_ARTIC_EXPORT ArticulatedCollisionManager {
   /// Lets one more pair touch. Needs setup().
   /// @throws std::invalid_argument naming what is no link, obstacle or attached object.
   void allow(const std::string& a, const std::string& b);
-  /// Has a pair checked again, also if the two are neighbours, or stand still against each other. Needs setup().
+  /// Has a pair checked again, also if the two are neighbours, or stand still against each other. Needs setup(). An
+  /// attached object may touch the link that carries it and its `touch_links` all the same (attach()).
   /// @throws std::invalid_argument as allow().
   void disallow(const std::string& a, const std::string& b);
   /// The pairs that may touch, as set by setAllowedCollisions(), allow() and disallow(); what the rule for neighbours

@@ -527,7 +527,9 @@ void bindChanges(py::class_<World>& world) {
           [](World& w, const std::string& a, const std::string& b) {
             forEachPair(w, a, b, [](auto& m, const auto& x, const auto& y) { m.disallow(x, y); });
           },
-          "Has a pair checked again, also if the two are neighbours.", py::arg("a"), py::arg("b"))
+          "Has a pair checked again, also if the two are neighbours, or stand still against each other. An attached "
+          "object may touch the link that carries it and its `touch_links` all the same.",
+          py::arg("a"), py::arg("b"))
       .def_property(
           "allowed", [](const World& w) { return pairsOf(w.allowed()); },
           [](World& w, py::handle pairs) {

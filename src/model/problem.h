@@ -53,9 +53,9 @@ struct alignas(64) StillBounds {
   Placement inverse;  ///< Body::inverse
   CoreBox box;
   const TreeView* tree;
-  bool solid;    ///< one bounded piece that is no triangle: a point within its surface is within it
-  bool entered;  ///< it has upper nodes: stage 1 goes into it
-  std::int32_t obstacle = 0;
+  bool solid;                 ///< one bounded piece that is no triangle: a point within its surface is within it
+  bool entered;               ///< it has upper nodes: stage 1 goes into it
+  std::int32_t obstacle = 0;  ///< its place in Problem::obstacles
 };
 
 /// Two links to check. The motion is B's, seen from A. (A link and an obstacle need no such record: A is the obstacle,

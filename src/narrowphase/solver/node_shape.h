@@ -5,6 +5,7 @@
 
 #include "convex/cloud.h"
 #include "narrowphase/solver/swept_box.h"
+#include "numerics/assertion.h"
 #include "numerics/constants.h"
 
 namespace fcl_artic {
@@ -57,7 +58,7 @@ inline Piece boxOf(const Node& node) {
 /// body, the node's box.
 class NodeHull {
  public:
-  NodeHull(const TreeView& tree, int node) : piece_(tree.outer) {
+  NodeHull(const TreeView& tree, int node) : piece_(node == 0 ? tree.outer : nullptr) {
     if (node == 0 || !exists(tree, node)) return;
     NodeRoom room;
     const Node& at = nodeOf(tree, node, room);
@@ -69,8 +70,10 @@ class NodeHull {
   static bool exists(const TreeView& tree, int node) {
     return node == 0 ? tree.outer != nullptr : tree.upper != nullptr;
   }
-  /// There must be one.
-  const Piece& operator*() const { return *piece_; }
+  const Piece& operator*() const {
+    FCL_ARTIC_ASSERT(piece_ != nullptr);  // exists()
+    return *piece_;
+  }
 
  private:
   PieceRoom room_;
