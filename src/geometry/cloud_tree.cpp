@@ -111,8 +111,7 @@ class CloudBuilder {
       ball.cluster_size = static_cast<std::uint16_t>(range.size());
       if (radii_.size() > 1) tree_.radii[i] = radii_[number];
       const baseline::Piece piece = baseline::pieceOfBall(view_, static_cast<int>(i));
-      if (!(piece.reach + piece.radius <= kFarthest))
-        throw std::invalid_argument("a size is not finite or beyond 1e9 m");
+      requireNear(piece);
     }
     const auto first = static_cast<int>(range.begin), size = static_cast<int>(range.size());
     return baseline::nodeOverBalls(view_, first, size, kBelowCluster + 2 * first);
@@ -147,6 +146,10 @@ void CloudTree::show(TreeView& view) const {
   view.balls = balls.data();
   view.ball_radii = radii.data();
   view.ball_radius_stride = radii.size() > 1 ? 1 : 0;
+}
+
+void requireNear(const engine::Piece& piece) {
+  if (!(piece.reach + piece.radius <= kFarthest)) throw std::invalid_argument("a size is not finite or beyond 1e9 m");
 }
 
 CloudTree buildCloudTree(const std::vector<Eigen::Vector3d>& centers, const std::vector<double>& radii, int threads) {

@@ -26,6 +26,9 @@ struct CloudTree {
   void show(engine::TreeView& view) const;
 };
 
+/// @throws std::invalid_argument when a piece's reach or radius is not finite, or their sum is beyond 1e9 m.
+void requireNear(const engine::Piece& piece);
+
 /// The tree over two balls or more, at most kMaxBalls. It depends on the balls alone: not on the number of threads, nor
 /// on the machine.
 /// @param radii  one for all, or one each; finite, at least 0.

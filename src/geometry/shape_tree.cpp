@@ -111,7 +111,7 @@ BoxBounds measure(Piece& piece) {
     box.hi[k] = piece.center[k] + half[k] + piece.radius;
   }
   piece.reach = std::sqrt(sum) * (1 + 1e-15);
-  if (!(piece.reach + piece.radius <= kFarthest)) throw std::invalid_argument("a size is not finite or beyond 1e9 m");
+  requireNear(piece);
   return box;
 }
 
