@@ -480,13 +480,24 @@ GeometryContent::GeometryContent(const fcl::CollisionGeometryd& geometry, std::s
 namespace {
 
 /// Whether the tree is that of these balls: it has the number of each.
+/// A ball of a tree of balls; a tree of one stores it as a piece.
+struct BallOfTree {
+  std::int32_t number;
+  const double* center;
+  double radius;
+};
+BallOfTree ballOf(const engine::TreeView& tree, std::int32_t i) {
+  if (tree.balls) return {tree.balls[i].number, tree.balls[i].center, baseline::radiusOfBall(tree, i)};
+  const Piece& piece = tree.pieces[i];
+  return {piece.primitive, piece.center, piece.radius};
+}
+
 bool isOfBalls(const engine::TreeView& tree, const PointCloud& cloud) {
   const std::vector<Eigen::Vector3d>& points = cloud.points();
   if (points.size() != static_cast<std::size_t>(tree.num_pieces)) return false;
   for (std::int32_t i = 0; i < tree.num_pieces; ++i) {
-    baseline::PieceRoom room;
-    const Piece& ball = baseline::pieceOf(tree, i, room);
-    const auto number = static_cast<std::size_t>(ball.primitive);
+    const BallOfTree ball = ballOf(tree, i);
+    const auto number = static_cast<std::size_t>(ball.number);
     if (!std::equal(ball.center, ball.center + 3, points[number].data())) return false;
     if (cloud.radius(number) != ball.radius) return false;
   }
@@ -496,9 +507,8 @@ bool isOfBalls(const engine::TreeView& tree, const PointCloud& cloud) {
 bool haveSameBalls(const engine::TreeView& a, const engine::TreeView& b) {
   if (a.num_pieces != b.num_pieces) return false;
   for (std::int32_t i = 0; i < a.num_pieces; ++i) {
-    baseline::PieceRoom room_a, room_b;
-    const Piece &one = baseline::pieceOf(a, i, room_a), &other = baseline::pieceOf(b, i, room_b);
-    if (one.primitive != other.primitive || one.radius != other.radius) return false;
+    const BallOfTree one = ballOf(a, i), other = ballOf(b, i);
+    if (one.number != other.number || one.radius != other.radius) return false;
     if (!std::equal(one.center, one.center + 3, other.center)) return false;
   }
   return true;
