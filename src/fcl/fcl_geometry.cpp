@@ -479,7 +479,6 @@ GeometryContent::GeometryContent(const fcl::CollisionGeometryd& geometry, std::s
 
 namespace {
 
-/// Whether the tree is that of these balls: it has the number of each.
 /// A ball of a tree of balls; a tree of one stores it as a piece.
 struct BallOfTree {
   std::int32_t number;
@@ -492,6 +491,7 @@ BallOfTree ballOf(const engine::TreeView& tree, std::int32_t i) {
   return {piece.primitive, piece.center, piece.radius};
 }
 
+/// Whether the tree is that of these balls: it has the number of each.
 bool isOfBalls(const engine::TreeView& tree, const PointCloud& cloud) {
   const std::vector<Eigen::Vector3d>& points = cloud.points();
   if (points.size() != static_cast<std::size_t>(tree.num_pieces)) return false;
