@@ -120,8 +120,9 @@ struct QueryStatistics : StandardStatistics {
 /// The answer of an ArticulatedCollisionManager: verdict and bracket (Bracket), contacts, work. A query writes every
 /// field; if it throws, the result is reset: `undecided`, t_lower at the motion's begin, no contacts.
 struct CertifiedResult : Bracket {
-  /// The first contact of every two bodies, in the order of their t_lower, at most CertifiedRequest::max_contacts; if
-  /// the result is `certain`, the first one is that which is proven first. Empty if the motion is free.
+  /// The first contact of every two bodies, in the order of their t_lower, at most CertifiedRequest::max_contacts. All
+  /// geometries of a link count as one body here. If the result is `certain`, the first contact is that which is proven
+  /// first. Empty if the motion is free.
   /// `undecided` has contacts only for a trajectory with `firstOfEveryPair`: those found before the budget ran out.
   std::vector<CertifiedContact> contacts;
   /// Pose of every link at t_lower, link to world, in the order of the links. Empty if the motion is free, and if
