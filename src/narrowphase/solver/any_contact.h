@@ -8,6 +8,8 @@
 //    they meet.
 // 2. In stage 1, tryObstacle(), for a link deep in a solid: a ball inside the link, a hull's vertex in the solid, a
 //    chord of the solid through a triangle.
+//    tryPatch(), for a body deep in a node of a large one: of a mesh in the hand a vertex in the solid; pieces below
+//    the node.
 // 3. In stage 1, considerLinks(): a ball inside a link in a ball inside another, in the pose in which their line
 //    swept spheres are deepest in each other.
 // 4. In the first batch (PairSearch::testHulls()) pair by pair, links deepest in each other first (deepestFirst()). If
@@ -165,9 +167,14 @@ inline void AnyContact::considerLinks(PairId pair, Lanes square, double radii) {
   pose_guesses_.push({pair, lane, distance, near});
 }
 
-/// For a link deep in a node of a large body: tries pieces below it in the lane in which it is deepest.
+/// For a body deep in a node of a large one, in the lane in which it is deepest. Where a mesh is carried into a solid,
+/// tries a vertex of its hull in the solid. Then tries pieces below the node. (A Panda with a mesh of 10^4 triangles:
+/// without the vertex any contact takes a tenth longer; with four times the boxes of what is carried, 5 %.)
 inline bool AnyContact::tryPatch(const Entry& e) {
-  return proofs_.anyPieces(motions_.of(e.pair, whole()), e.deepest, kMaxBoxPairs, e);
+  const Seen seen = motions_.of(e.pair, whole());
+  const bool is_carried = e.b != 0;
+  if (is_carried && isSolid(seen->a()) && proofs_.vertexInside(seen, e.deepest)) return true;
+  return proofs_.anyPieces(seen, e.deepest, is_carried ? kMaxBoxPairs / 4 : kMaxBoxPairs, e);
 }
 
 /// Returns the order in which pairs are to be looked at, as indices into `open`. Links deep in each other come first,
@@ -196,7 +203,9 @@ inline const Buffer<std::int32_t>& AnyContact::deepestFirst(const Buffer<Entry>&
 /// are deepest.
 /// @param e  only its lanes are tried.
 inline bool AnyContact::tryLinks(const Entry& e) {
-  if (e.deepest >= 0 && (e.mask >> e.deepest & 1)) return tryPatch(e);
+  if (e.deepest >= 0 && (e.mask >> e.deepest & 1)) {
+    return proofs_.anyPieces(motions_.of(e.pair, whole()), e.deepest, kMaxBoxPairs, e);
+  }
   const PoseGuess* const guess = guessOf(e.pair);
   if (!guess) return false;
   frames_.set(whole());
