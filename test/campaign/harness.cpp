@@ -108,6 +108,14 @@ std::uint64_t fromEnvironment(const char* name, std::uint64_t usual) {
   return wanted ? std::strtoull(wanted, nullptr, 10) : usual;
 }
 
+Options optionsOfTest(const std::string& name, std::uint64_t cases, std::uint64_t seed) {
+  Options o;
+  o.cases = fromEnvironment((name + "_CASES").c_str(), cases);
+  o.seed = fromEnvironment((name + "_SEED").c_str(), seed);
+  o.threads = 1;
+  return o;
+}
+
 std::string format(const char* text, ...) {
   char line[512];
   va_list arguments;

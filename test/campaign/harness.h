@@ -124,6 +124,10 @@ struct Options {
   std::string folder = QueryFiles::usualFolder();    ///< gets the queries of cases that fail; empty: none
 };
 
+/// Options of a test that runs on one thread. The variables <name>_CASES and <name>_SEED of the
+/// environment ask for more cases and for others.
+Options optionsOfTest(const std::string& name, std::uint64_t cases, std::uint64_t seed = 1);
+
 /// One case, while its campaign looks at it.
 struct Case {
   std::uint64_t index;

@@ -13,10 +13,7 @@ namespace {
 
 TEST(Modes, AgreeInAllCombinationsOfOptions) {
   constexpr std::uint64_t kCases = 600;
-  campaign::Options o;
-  o.cases = campaign::fromEnvironment("FCL_ARTIC_MODES_CASES", kCases);
-  o.seed = campaign::fromEnvironment("FCL_ARTIC_MODES_SEED", 16);
-  o.threads = 1;
+  const campaign::Options o = campaign::optionsOfTest("FCL_ARTIC_MODES", kCases, 16);
   const campaign::Tally all = runWithoutFaults(modes::campaignOfModes(), o).total;
   if (o.cases < kCases) return;
   for (const std::string& rule : modes::rules())

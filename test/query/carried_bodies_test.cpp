@@ -359,10 +359,7 @@ void lookAtCase(campaign::Case& c) {
 TEST(CarriedBodies, AllowedPairsAndChangesInPlace) {
   campaign::Campaign bodies;
   bodies.look = lookAtCase;
-  campaign::Options o;
-  o.cases = campaign::fromEnvironment("FCL_ARTIC_CARRIED_CASES", 100);
-  o.seed = campaign::fromEnvironment("FCL_ARTIC_CARRIED_SEED", 1);
-  o.threads = 1;
+  const campaign::Options o = campaign::optionsOfTest("FCL_ARTIC_CARRIED", 100);
   const campaign::Tally all = runWithoutFaults(bodies, o).total;
   EXPECT_GT(all.share("carried, free"), 0.5);  // of ten motions
   EXPECT_GT(all.share("carried, later contact"), 0.3);

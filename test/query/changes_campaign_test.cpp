@@ -804,10 +804,7 @@ campaign::Tally expectAsIfBuiltFromScratch(std::uint64_t answers_each) {
     const std::string failure = Kind(c).run(30);
     if (!failure.empty()) c.fault("differs", failure);
   };
-  campaign::Options o;
-  o.cases = campaign::fromEnvironment("FCL_ARTIC_CHANGES_CASES", 600);
-  o.seed = campaign::fromEnvironment("FCL_ARTIC_CHANGES_SEED", 1000003);
-  o.threads = 1;
+  const campaign::Options o = campaign::optionsOfTest("FCL_ARTIC_CHANGES", 600, 1000003);
   const campaign::Tally all = runWithoutFaults(sequences, o).total;
   EXPECT_GT(all["answers"], answers_each * o.cases);
   EXPECT_GT(all.share("edits telling", "edits read"), 0.1);

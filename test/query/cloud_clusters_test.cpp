@@ -156,10 +156,7 @@ void lookAtCase(campaign::Case& c) {
 TEST(CloudClusters, FreeTimesHaveNoContact) {
   campaign::Campaign clusters;
   clusters.look = lookAtCase;
-  campaign::Options o;
-  o.cases = campaign::fromEnvironment("FCL_ARTIC_CLUSTER_CASES", 6000);
-  o.seed = campaign::fromEnvironment("FCL_ARTIC_CLUSTER_SEED", 1);
-  o.threads = 1;
+  const campaign::Options o = campaign::optionsOfTest("FCL_ARTIC_CLUSTER", 6000);
   const campaign::Tally all = runWithoutFaults(clusters, o).total;
   for (const char* which : {"still", "carried"}) {
     EXPECT_GT(all.share(which + std::string(", free")), 0.05);

@@ -791,10 +791,7 @@ void wholeAndCut(campaign::Case& c) {
 TEST(LargeBodies, AreTheirPieces) {
   campaign::Campaign bodies;
   bodies.look = wholeAndCut;
-  campaign::Options o;
-  o.cases = campaign::fromEnvironment("FCL_ARTIC_LARGE_CASES", 80);
-  o.seed = campaign::fromEnvironment("FCL_ARTIC_LARGE_SEED", 1);
-  o.threads = 1;
+  const campaign::Options o = campaign::optionsOfTest("FCL_ARTIC_LARGE", 80);
   const campaign::Tally all = runWithoutFaults(bodies, o).total;
   EXPECT_GT(all.share("free"), 0.5);  // of four motions
   EXPECT_GT(all.share("later contact"), 0.3);

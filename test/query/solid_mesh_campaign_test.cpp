@@ -30,10 +30,7 @@ namespace {
 campaign::Tally runCases(std::uint64_t few, void (*look)(campaign::Case& c)) {
   campaign::Campaign bodies;
   bodies.look = [look](campaign::Case& c) { lookByExpectations(look, c); };
-  campaign::Options o;
-  o.cases = campaign::fromEnvironment("FCL_ARTIC_SOLID_CASES", few);
-  o.seed = campaign::fromEnvironment("FCL_ARTIC_SOLID_SEED", 1);
-  o.threads = 1;
+  const campaign::Options o = campaign::optionsOfTest("FCL_ARTIC_SOLID", few);
   return runWithoutFaults(bodies, o).total;
 }
 

@@ -203,7 +203,7 @@ inline const Buffer<std::int32_t>& AnyContact::deepestFirst(const Buffer<Entry>&
 /// are deepest.
 /// @param e  only its lanes are tried.
 inline bool AnyContact::tryLinks(const Entry& e) {
-  if (e.deepest >= 0 && (e.mask >> e.deepest & 1)) {
+  if (e.deepest >= 0 && (e.mask >> e.deepest & 1)) {  // (to try a vertex for each patch takes longer)
     return proofs_.anyPieces(motions_.of(e.pair, whole()), e.deepest, kMaxBoxPairs, e);
   }
   const PoseGuess* const guess = guessOf(e.pair);
