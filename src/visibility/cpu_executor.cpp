@@ -13,11 +13,10 @@ constexpr float kNothing = 3e38f;
 constexpr double kFlat = 1e-6;
 
 /// Visits the rows of a footprint until one says true: visit(index in the tile of the row's first pixel, number of
-/// pixels, their lower and upper depths). The rounding of a row's ends is some 1e-4 pixels, which kEta covers.
+/// pixels). The rounding of a row's ends is some 1e-4 pixels, which kEta covers.
 /// @return whether one said true.
 template <class Visit>
 bool anyRow(const Footprint& f, const Visit& visit) {
-  float lower[kLargestResolution], upper[kLargestResolution];
   for (int row = f.y0; row <= f.y1; ++row) {
     const double y = row + 0.5;
     double x0 = f.x0, x1 = f.x1;
@@ -33,20 +32,7 @@ bool anyRow(const Footprint& f, const Visit& visit) {
     }
     const int begin = static_cast<int>(std::ceil(std::min(x0, f.x1 + 1.0))),
               n = static_cast<int>(std::floor(std::max(x1, -1.0))) - begin + 1;
-    if (n <= 0) continue;
-    std::fill_n(lower, n, f.bounds[0].lower);
-    std::fill_n(upper, n, f.bounds[0].upper);
-    const float x = static_cast<float>(begin) + 0.5f;
-    for (int k = 1; k < f.num_bounds; ++k) {
-      const DepthBounds& b = f.bounds[k];
-      const float at_row = b.b * static_cast<float>(y);
-      for (int i = 0; i < n; ++i) {
-        const float t = b.a * (x + static_cast<float>(i)) + at_row;
-        lower[i] = std::max(lower[i], t + b.lower);
-        upper[i] = std::min(upper[i], t + b.upper);
-      }
-    }
-    if (visit(row * f.resolution + begin, n, lower, upper)) return true;
+    if (n > 0 && visit(row * f.resolution + begin, n)) return true;
   }
   return false;
 }
@@ -62,16 +48,15 @@ class CpuExecutor : public Executor {
   }
 
   void drawSwept(const Drawing& drawing, int view) {
-    const auto pixels = static_cast<std::size_t>(drawing.resolution * drawing.resolution);
-    nearest_[view].assign(pixels, kNothing);
-    farthest_[view].assign(pixels, -kNothing);
+    const int pixels = drawing.resolution * drawing.resolution;
+    std::fill_n(nearest_[view], pixels, kNothing);
+    std::fill_n(farthest_[view], pixels, -kNothing);
     for (const Volume& volume : drawing.swept) {
       if (!project(drawing, volume, view, footprint_)) continue;
-      anyRow(footprint_, [&](int at, int n, const float* lower, const float* upper) {
-        float *nearest = nearest_[view].data() + at, *farthest = farthest_[view].data() + at;
-        for (int i = 0; i < n; ++i) {
-          nearest[i] = std::min(nearest[i], lower[i]);
-          farthest[i] = std::max(farthest[i], upper[i]);
+      anyRow(footprint_, [&](int at, int n) {
+        for (int i = at; i < at + n; ++i) {
+          nearest_[view][i] = std::min(nearest_[view][i], footprint_.nearest);
+          farthest_[view][i] = std::max(farthest_[view][i], footprint_.farthest);
         }
         return false;
       });
@@ -80,16 +65,18 @@ class CpuExecutor : public Executor {
   /// Whether in some pixel of the piece's footprint its depths meet those of the swept volumes.
   bool meets(const Drawing& drawing, const Volume& piece, int view) {
     if (!project(drawing, piece, view, footprint_)) return false;
-    return anyRow(footprint_, [&](int at, int n, const float* lower, const float* upper) {
-      const float *nearest = nearest_[view].data() + at, *farthest = farthest_[view].data() + at;
+    return anyRow(footprint_, [&](int at, int n) {
+      const float *nearest = nearest_[view] + at, *farthest = farthest_[view] + at;
       int found = 0;
-      for (int i = 0; i < n; ++i) found |= upper[i] >= nearest[i] && lower[i] <= farthest[i];
+      for (int i = 0; i < n; ++i) found |= footprint_.farthest >= nearest[i] && footprint_.nearest <= farthest[i];
       return found != 0;
     });
   }
 
   Footprint footprint_;
-  std::vector<float> nearest_[kViews], farthest_[kViews];  ///< depths of the swept volumes, by pixel
+  /// Depths of the swept volumes, by pixel.
+  float nearest_[kViews][kLargestResolution * kLargestResolution],
+      farthest_[kViews][kLargestResolution * kLargestResolution];
 };
 
 }  // namespace

@@ -34,8 +34,8 @@ struct Drawing {
     std::int32_t group;
   };
   int resolution = 32;  ///< pixels along a side of each view
-  /// Only while both are grown, executors prove anything. Tests use others, to show that they notice wrong executors.
-  bool grow_footprints = true, grow_depths = true;
+  /// Only with it executors prove anything. Tests go without it, to show that they notice wrong executors.
+  bool grow_footprints = true;
   double lo[3] = {}, hi[3] = {};  ///< The window: it holds every point that a swept volume and a piece share.
   std::vector<double> points;     ///< xyz, m
   std::vector<Volume> swept;
@@ -64,21 +64,16 @@ struct Side {
   float a, b, c, unused;
 };
 
-/// In the pixel with the centre (x, y) the volume's depth lies in [a x + b y + lower, a x + b y + upper], evaluated in
-/// float.
-struct DepthBounds {
-  float a, b, lower, upper;
-};
-
-/// A convex volume as one view shows it: a convex region, and depths. The region holds the centre of every
+/// A convex volume as one view shows it: a convex region, and two depths. The region holds the centre of every
 /// pixel whose square the volume meets, at a distance of at least eta from its border. Computed in double and rounded
 /// outward. Shaders read it as it lies in memory (`gl_executor.cpp`).
 struct Footprint {
-  static constexpr int kMaxSides = 20, kMaxBounds = 7;
+  static constexpr int kMaxSides = 20;
   std::int32_t x0, y0, x1, y1;  ///< pixels, ends included; at least one
-  std::int32_t view, resolution, num_sides, num_bounds;
+  std::int32_t view, resolution, num_sides, unused;
+  float nearest, farthest;  ///< bounds on the volume's depths
+  float unused_depths[2];
   Side sides[kMaxSides];
-  DepthBounds bounds[kMaxBounds];  ///< the first one has a = b = 0
 };
 
 /// Finds the footprint of a volume.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Each footprint is drawn as its box of whole pixels. Sides and depth bounds are evaluated at the pixels' centres,
+// Each footprint is drawn as its box of whole pixels. Sides are evaluated at the pixels' centres,
 // relative to the view's tile: the rasteriser snaps and interpolates nothing that counts.
 #include <algorithm>
 #include <cstddef>
@@ -16,12 +16,12 @@ namespace {
 
 constexpr float kNothing = 3e38f;
 
-/// visibility::Footprint: `box` is x0 to y1, `info` view, resolution and the numbers of sides and bounds.
-#define FCL_ARTIC_FOOTPRINTS                                            \
-  "#version 430 core\n"                                                 \
-  "struct Footprint { ivec4 box, info; vec4 sides[20], bounds[7]; };\n" \
+/// visibility::Footprint: `box` is x0 to y1, `info` view, resolution and the number of sides, `depths` both of them.
+#define FCL_ARTIC_FOOTPRINTS                                         \
+  "#version 430 core\n"                                              \
+  "struct Footprint { ivec4 box, info; vec4 depths, sides[20]; };\n" \
   "layout(std430, binding = 0) readonly buffer Footprints { Footprint footprints[]; };\n"
-static_assert(sizeof(Footprint) == sizeof(float[4]) * (2 + 20 + 7), "as in the shaders");
+static_assert(sizeof(Footprint) == sizeof(float[4]) * (3 + 20), "as in the shaders");
 
 /// Each OpenGL 4.3 lets shaders read 2^24 bytes of a buffer (MAX_SHADER_STORAGE_BLOCK_SIZE). Beyond what a driver lets
 /// them read they may read anything, so no draw takes more footprints than that, three of each piece.
@@ -39,23 +39,17 @@ void main() {
 })";
 
 /// Depth of the volume in this pixel: from depths().x to depths().y; outside of the footprint nothing is drawn.
-#define FCL_ARTIC_DEPTHS                                          \
-  FCL_ARTIC_FOOTPRINTS                                            \
-  "flat in int index;\n"                                          \
-  "vec2 depths() {\n"                                             \
-  "  ivec4 info = footprints[index].info;\n"                      \
-  "  vec2 p = gl_FragCoord.xy - vec2(info.x * info.y, 0);\n"      \
-  "  for (int i = 0; i < info.z; ++i) {\n"                        \
-  "    vec4 side = footprints[index].sides[i];\n"                 \
-  "    if (side.x * p.x + side.y * p.y > side.z) discard;\n"      \
-  "  }\n"                                                         \
-  "  vec2 d = footprints[index].bounds[0].zw;\n"                  \
-  "  for (int i = 1; i < info.w; ++i) {\n"                        \
-  "    vec4 bound = footprints[index].bounds[i];\n"               \
-  "    float t = bound.x * p.x + bound.y * p.y;\n"                \
-  "    d = vec2(max(d.x, t + bound.z), min(d.y, t + bound.w));\n" \
-  "  }\n"                                                         \
-  "  return d;\n"                                                 \
+#define FCL_ARTIC_DEPTHS                                     \
+  FCL_ARTIC_FOOTPRINTS                                       \
+  "flat in int index;\n"                                     \
+  "vec2 depths() {\n"                                        \
+  "  ivec4 info = footprints[index].info;\n"                 \
+  "  vec2 p = gl_FragCoord.xy - vec2(info.x * info.y, 0);\n" \
+  "  for (int i = 0; i < info.z; ++i) {\n"                   \
+  "    vec4 side = footprints[index].sides[i];\n"            \
+  "    if (side.x * p.x + side.y * p.y > side.z) discard;\n" \
+  "  }\n"                                                    \
+  "  return footprints[index].depths.xy;\n"                  \
   "}\n"
 
 /// Swept volumes: blending keeps the least of each channel.

@@ -26,37 +26,14 @@ constexpr double kLengths[Bounds::kDirections] = {1,       1,       1,      M_SQ
 struct PlacedTree {
   const engine::TreeView& tree;
   const engine::Placement& at;
-  double pad;                           ///< bound on the rounding of a placed point, plus the margin
-  double axes[4][Bounds::kDirections];  ///< of the tree's frame, and its origin, along the directions
+  double pad;  ///< bound on the rounding of a placed point, plus the margin
 
   PlacedTree(const engine::TreeView& of, const engine::Placement& where, double margin)
       : tree(of),
         at(where),
         // The placement's own error and a dozen roundings of numbers no larger than these.
-        pad(margin + 0x1p-52 * (at.ulps + 64) * (2 * of.extent + at.length + margin)) {
-    for (int d = 0; d < Bounds::kDirections; ++d) {
-      const double x = kAlong[0][d], y = kAlong[1][d], z = kAlong[2][d], *R = at.R, *t = at.t;
-      for (int k = 0; k < 3; ++k) axes[k][d] = x * R[k] + y * R[3 + k] + z * R[6 + k];
-      axes[3][d] = x * t[0] + y * t[1] + z * t[2];
-    }
-  }
+        pad(margin + 0x1p-52 * (at.ulps + 64) * (2 * of.extent + at.length + margin)) {}
 
-  /// Bounds of the node's box: where its middle is, and how far its half sides reach. A direction is no longer than
-  /// sqrt(3), and roundings are some twenty: within its length times pad.
-  Bounds boundsOf(const engine::Node& node) const {
-    Bounds b;
-    for (int d = 0; d < Bounds::kDirections; ++d) {
-      double middle = axes[3][d], reach = kLengths[d] * pad;
-      for (int k = 0; k < 3; ++k) {
-        const auto lo = static_cast<double>(node.lo[k]), hi = static_cast<double>(node.hi[k]);
-        middle += axes[k][d] * (0.5 * (hi + lo));
-        reach += std::abs(axes[k][d]) * (0.5 * (hi - lo));
-      }
-      b.lo[d] = middle - reach;
-      b.hi[d] = middle + reach;
-    }
-    return b;
-  }
   void place(const double* p, double* x) const {
     const double *R = at.R, *t = at.t;
     for (int k = 0; k < 3; ++k) x[k] = R[3 * k] * p[0] + R[3 * k + 1] * p[1] + R[3 * k + 2] * p[2] + t[k];
@@ -150,29 +127,26 @@ bool addPieces(const engine::TreeView& tree, std::int32_t root, const engine::Pl
     const Open top = stack[--open];
     baseline::NodeRoom room;
     const engine::Node& node = baseline::nodeOf(tree, top.node, room);
-    const bool small = static_cast<double>(node.radius) < swept.least;
-    if (!small && !node.isLeaf()) {
-      const std::uint32_t met = placed.boundsOf(node).meet(swept.parts, top.lanes);
-      if (!met) continue;
-      if (open + 2 > kMostOpen) return addNothing();
-      stack[open++] = {node.right(), met};
-      stack[open++] = {node.left(), met};
-      continue;
-    }
-    if (drawing.pieces.size() >= most) return addNothing();
+    const bool small = static_cast<double>(node.radius) < swept.least, drawn = small || node.isLeaf();
     baseline::PieceRoom piece;
-    const Volume volume =
-        small ? placed.addBall(node, drawing) : placed.addPiece(baseline::pieceOf(tree, node.piece(), piece), drawing);
+    const Volume volume = small || !node.isLeaf()
+                              ? placed.addBall(node, drawing)
+                              : placed.addPiece(baseline::pieceOf(tree, node.piece(), piece), drawing);
     const double* points = drawing.points.data() + 3 * static_cast<std::ptrdiff_t>(volume.first);
     const Bounds bounds = boundsOf(points, volume.count, volume.radius);
     const std::uint32_t met = bounds.meet(swept.parts, top.lanes);
-    if (met) {
+    if (met && drawn) {
+      if (drawing.pieces.size() >= most) return addNothing();
       touched |= met;
       reached.join(bounds);
       drawing.pieces.push_back({volume, drawing.num_groups});
-    } else {
-      drawing.points.resize(3 * static_cast<std::size_t>(volume.first));
+      continue;
     }
+    drawing.points.resize(3 * static_cast<std::size_t>(volume.first));
+    if (!met) continue;
+    if (open + 2 > kMostOpen) return addNothing();
+    stack[open++] = {node.right(), met};
+    stack[open++] = {node.left(), met};
   }
   lanes &= touched;
   reach = reached;
