@@ -280,8 +280,8 @@ const char* change(Random& random, World& w) {
   return "nothing";
 }
 
-/// One motion, asked and judged.
-void look(campaign::Case& c, Random& random, World& w, const char* changed) {
+/// Ends of a motion.
+std::pair<VectorXd, VectorXd> drawMotion(Random& random, const World& w) {
   const auto n = static_cast<Eigen::Index>(w.joints.size());
   VectorXd q0(n), q1(n);
   const double most = random.logUniform(0.1, 3);
@@ -290,6 +290,12 @@ void look(campaign::Case& c, Random& random, World& w, const char* changed) {
     q0[i] = random.uniform(-1, 1) * (slides ? 0.3 : 2.5);
     q1[i] = q0[i] + most * random.uniform(-1, 1) * (slides ? 0.3 : 1);
   }
+  return {q0, q1};
+}
+
+/// One motion, asked and judged.
+void look(campaign::Case& c, Random& random, World& w, const char* changed) {
+  const auto [q0, q1] = drawMotion(random, w);
   CertifiedRequest request;
   request.mode = static_cast<ContactMode>(random.below(3));
   request.max_contacts = 1000;
@@ -354,7 +360,43 @@ void lookAtCase(campaign::Case& c) {
   }
 }
 
+/// Any contacts of a mesh in the hand: at the time that the answer gives, what it says touches does.
+void lookAtAnyContacts(campaign::Case& c) {
+  Random random(c.id.seed);
+  World w;
+  drawWorld(random, w);
+  if (!w.large.mesh) return;
+  attach(random, w);
+  w.manager->setup();
+  CertifiedRequest request;
+  request.mode = ContactMode::any;
+  for (int motion = 0; motion < 100; ++motion) {
+    const auto [q0, q1] = drawMotion(random, w);
+    const CertifiedResult r = w.manager->continuousCollide(q0, q1, request);
+    if (r.status != Status::contact || !r.contacts[0].certain) continue;
+    const CertifiedContact& contact = r.contacts[0];
+    const std::string name = contact.body1.name == "large" ? contact.body2.name : contact.body1.name;
+    const Other& other =
+        *std::find_if(w.others.begin(), w.others.end(), [&](const Other& o) { return o.name == name; });
+    const auto touches = [&, q = VectorXd(q0 + contact.t_upper * (q1 - q0))](const Geometry& geometry) {
+      return w.touches(other, geometry, q);
+    };
+    c.tally.count("contacts");
+    c.tally.count("with obstacles", other.link < 0);
+    if (std::none_of(other.larger.begin(), other.larger.end(), touches))
+      c.fault("no contact", campaign::format("%s at %.9g", name.c_str(), contact.t_upper));
+  }
+}
+
 }  // namespace
+
+TEST(CarriedBodies, AnyContactsOfMeshesTouch) {
+  campaign::Campaign bodies;
+  bodies.look = lookAtAnyContacts;
+  const campaign::Options o = campaign::optionsOfTest("FCL_ARTIC_CARRIED", 300);
+  const campaign::Tally all = runWithoutFaults(bodies, o).total;
+  EXPECT_GT(all.share("with obstacles"), 5);  // of 100 motions
+}
 
 TEST(CarriedBodies, AllowedPairsAndChangesInPlace) {
   campaign::Campaign bodies;
