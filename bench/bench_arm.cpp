@@ -77,7 +77,7 @@ int main(int argc, char** argv) {
             pairs += rivals->takePairsLeft();
             return answer;
           });
-          const double runs = static_cast<double>(n) * passes;
+          const double runs = static_cast<double>(n) * measured.row.passes;
           if (pairs > 0) measured.row.per_query = {{"pairs_after_boxes", static_cast<double>(pairs) / runs}};
           std::size_t missed = 0, false_alarms = 0;
           double late = 0;

@@ -77,6 +77,9 @@ void addCounters(Row& row, const QueryStatistics& s) {
   }
 }
 
+/// Passes go on so long: few short queries would be over before the processor is at its full clock.
+constexpr std::chrono::milliseconds kLeastTime(20);
+
 Measured measure(std::size_t queries, int passes, const std::function<Answer(std::size_t)>& query) {
   return measureInTurns(queries, passes, {query}).front();
 }
@@ -86,7 +89,6 @@ std::vector<Measured> measureInTurns(std::size_t queries, int passes,
   using Clock = std::chrono::steady_clock;
   std::vector<Measured> all(ways.size());
   for (Measured& measured : all) {
-    measured.row.passes = passes;
     measured.answers.resize(queries);
     measured.us.assign(queries, std::numeric_limits<double>::infinity());
   }
@@ -103,12 +105,19 @@ std::vector<Measured> measureInTurns(std::size_t queries, int passes,
       measured.answers[i] = answer;
     }
   };
-  for (int done = 0; done < passes; done += 2) {
+  const auto enough = Clock::now() + ways.size() * kLeastTime;
+  int done = 0;
+  while (done < passes || (queries > 0 && Clock::now() < enough)) {
+    const int more = done < passes ? std::min(2, passes - done) : 2;
     for (std::size_t way = 0; way < ways.size(); ++way) {
-      for (int k = done; k < std::min(done + 2, passes); ++k) pass(way, k == 0);
+      for (int k = done; k < done + more; ++k) pass(way, k == 0);
     }
+    done += more;
   }
-  for (Measured& measured : all) summarise(measured);
+  for (Measured& measured : all) {
+    measured.row.passes = done;
+    summarise(measured);
+  }
   return all;
 }
 

@@ -37,7 +37,7 @@ struct Measured {
   std::vector<double> us;  ///< least time of each query
 };
 
-/// Runs all queries `passes` times in order and keeps the least time of each.
+/// Runs all queries in order, `passes` times at least and 20 ms at least, and keeps the least time of each.
 /// @param query  answers query i.
 /// @throws std::runtime_error when an answer differs from one pass to the next.
 Measured measure(std::size_t queries, int passes, const std::function<Answer(std::size_t)>& query);
