@@ -383,6 +383,7 @@ void lookAtAnyContacts(campaign::Case& c) {
     };
     c.tally.count("contacts");
     c.tally.count("with obstacles", other.link < 0);
+    c.tally.count("at the end", contact.t_upper == 1);
     if (std::none_of(other.larger.begin(), other.larger.end(), touches))
       c.fault("no contact", campaign::format("%s at %.9g", name.c_str(), contact.t_upper));
   }
@@ -396,6 +397,7 @@ TEST(CarriedBodies, AnyContactsOfMeshesTouch) {
   const campaign::Options o = campaign::optionsOfTest("FCL_ARTIC_CARRIED", 300);
   const campaign::Tally all = runWithoutFaults(bodies, o).total;
   EXPECT_GT(all.share("with obstacles"), 5);  // of 100 motions
+  EXPECT_GT(all["at the end"], 50u);
 }
 
 TEST(CarriedBodies, AllowedPairsAndChangesInPlace) {

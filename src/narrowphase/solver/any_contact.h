@@ -17,7 +17,8 @@
 //    meet. If the links are deep in each other, it also tests their nodes' boxes by the six axes, in one pose, down to
 //    triangles. Contact is proven if an edge of one certainly pierces another.
 // 5. tryOverlaps(): leaves at the middle of a part in which hulls overlap, unless the pair rests from the start on.
-// 6. In the search, Follower::proveAhead(): the pieces at a followed pair's witness, a little after the contact
+// 6. tryEnds(): the start or the end of the motion, of what the first batch leaves in the part beside it alone.
+// 7. In the search, Follower::proveAhead(): the pieces at a followed pair's witness, a little after the contact
 //    expected.
 #pragma once
 
@@ -60,6 +61,7 @@ class AnyContact : PartOfSolver {
   const Buffer<std::int32_t>& deepestFirst(const Buffer<Entry>& open);
   bool tryLinks(const Entry& e);
   bool tryOverlaps(Buffer<Entry>& open);
+  bool tryEnds(const Buffer<Entry>& open);
 
  private:
   bool isLeafPair(PairId pair) const;
@@ -249,6 +251,20 @@ inline bool AnyContact::tryOverlaps(Buffer<Entry>& open) {
   horizon_.dropSuspicion();
   horizon_.setBatch(whole());
   return horizon_.isOver();
+}
+
+/// Tries the start or the end of the motion, for pairs and patches that may touch in the part beside it alone: a few
+/// pieces of each. (Of 300 contacts of a Panda with a cloud of 10^6 points, four such took half of the time.)
+/// @param open  what the first batch has left.
+inline bool AnyContact::tryEnds(const Buffer<Entry>& open) {
+  if (!isWanted()) return false;
+  for (int i = 0; i < open.size() && !horizon_.isOver(); ++i) {
+    const Entry& e = open[i];
+    const bool last = e.mask == 1u << (kLanes - 1);
+    if (!last && e.mask != 1) continue;
+    if (proofs_.anyPieces(motions_.of(e.pair, TimeBatch::around(last)), 0, kMaxBoxPairs / 4, e)) return true;
+  }
+  return false;
 }
 
 }  // namespace FCL_ARTIC_ISA
