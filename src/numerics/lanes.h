@@ -218,7 +218,7 @@ FCL_ARTIC_INLINE Lanes numbered(Lanes a, int first) {
   typedef long long Bits __attribute__((vector_size(sizeof(Register))));
   Lanes o;
   for (int i = 0; i < kRegisters; ++i) {
-    Bits number;
+    Bits number = {};
     for (int k = 0; k < kRegisterLanes; ++k) number[k] = i * kRegisterLanes + k;
     o.r[i] = reinterpret_cast<Register>((reinterpret_cast<Bits>(a.r[i]) & ~static_cast<long long>(kNumbered - 1)) |
                                         (number + static_cast<long long>(first)));
