@@ -73,7 +73,7 @@ TEST(Pieces, AreThoseThatMeetTheParts) {
     std::uint32_t lanes = asked;
     constexpr std::size_t kMost = 40;
     const bool added = visibility::addPieces(tree->view(), 0, placement, margin, swept, kMost, lanes, reach, drawing);
-    EXPECT_TRUE(added ? expected <= kMost : expected >= kMost) << trial;
+    EXPECT_EQ(added, expected <= kMost) << trial;
     EXPECT_EQ(drawing.pieces.size(), added ? expected : 0) << trial;
     EXPECT_EQ(lanes, added ? met : asked) << trial;
     found += drawing.pieces.size();
@@ -102,6 +102,38 @@ TEST(Pieces, AreThoseThatMeetTheParts) {
   EXPECT_GT(found, 1000u);
   EXPECT_GT(too_many, 5u);
   EXPECT_LT(too_many, 80u);
+}
+
+/// `most` counts what is drawn already. If one piece more would be drawn, all stays as it was.
+TEST(Pieces, AreAllOrNone) {
+  constexpr std::size_t kPieces = 8;
+  std::vector<Vector3d> vertices;
+  std::vector<std::array<int, 3>> triangles;
+  for (int i = 0; i < static_cast<int>(kPieces); ++i) {
+    for (const Vector3d& corner : {Vector3d(0, 0, 0), Vector3d(0.5, 0, 0), Vector3d(0, 0.5, 0)})
+      vertices.push_back(Vector3d(i, 0, 0) + corner);
+    triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  const auto tree = ShapeTree::fromTriangles(vertices, triangles);
+  visibility::SweptParts swept;  // the second part holds no point
+  const Vector3d segment[2] = {{-1, 0, 0.1}, {9, 0, 0.1}};
+  swept.parts[0] = visibility::boundsOf(segment[0].data(), 2, 0.2);
+  visibility::Drawing drawing;
+  Bounds reach;
+  const auto add = [&](std::size_t most) {
+    std::uint32_t lanes = 3;
+    const bool added = visibility::addPieces(tree->view(), 0, {}, 0, swept, most, lanes, reach, drawing);
+    EXPECT_EQ(lanes, added ? 1u : 3u);
+    return added;
+  };
+  for (const std::size_t before : {std::size_t{0}, kPieces}) {
+    EXPECT_FALSE(add(before + kPieces - 1));
+    EXPECT_EQ(drawing.pieces.size(), before);
+    EXPECT_EQ(drawing.points.size(), 9 * before);
+    EXPECT_EQ(reach.lo[0]<reach.hi[0], before> 0);
+    EXPECT_TRUE(add(before + kPieces));
+  }
+  EXPECT_EQ(drawing.points.size(), 9 * drawing.pieces.size()) << "inner nodes leave no points";
 }
 
 /// One pair of a ball that sweeps along x and a triangle, `away` above it.
