@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cfenv>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -90,6 +91,48 @@ INSTANTIATE_TEST_SUITE_P(Executors, Rule,
                          [](const auto& info) {
                            return std::get<0>(info.param) + std::to_string(std::get<1>(info.param));
                          });
+
+/// Depths of a footprint hold the volume, in any rounding mode, and no more than floats make of it. Half of the volumes
+/// end next to the window's border, where little is left of numbers that are large.
+TEST(Footprints, DepthsHoldTheVolume) {
+  pairs::Random random(5);
+  int seen = 0;
+  for (int trial = 0; trial < 40000; ++trial) {
+    Drawing drawing = drawingOf(16);
+    for (int k = 0; k < 3; ++k) {
+      drawing.lo[k] = random.uniform(-1, 1);
+      drawing.hi[k] = drawing.lo[k] + random.uniform(0.5, 2);
+    }
+    const int view = random.below(3), count = 1 + random.below(4);
+    std::vector<test::Vector3d> points;
+    for (int i = 0; i < count; ++i)
+      points.push_back(test::Vector3d(0.3, 0.3, 0.3) + random.direction() * random.logUniform(1e-3, 1e3));
+    double least = points[0][view], most = least;
+    for (const test::Vector3d& point : points) {
+      least = std::min(least, point[view]);
+      most = std::max(most, point[view]);
+    }
+    double radius = random.logUniform(1e-3, 1e3);
+    if (trial % 2) radius = std::abs(least - drawing.lo[view]) * (1 + random.uniform(-1e-14, 1e-14));
+    drawing.swept.push_back(test::Adversary::addVolume(points, radius, drawing));
+    visibility::Footprint footprint;
+    constexpr int kModes[] = {FE_TONEAREST, FE_DOWNWARD, FE_UPWARD, FE_TOWARDZERO};
+    std::fesetround(kModes[trial / 2 % 4]);
+    const bool shown = project(drawing, drawing.swept[0], view, footprint);
+    std::fesetround(FE_TONEAREST);
+    if (!shown) continue;
+    ++seen;
+    using Long = long double;
+    const Long lo = drawing.lo[view], side = drawing.hi[view] - lo;
+    const Long nearest = (least - lo - radius) / side, farthest = (most - lo + radius) / side;
+    ASSERT_LE(footprint.nearest, nearest) << trial;
+    ASSERT_GE(footprint.farthest, farthest) << trial;
+    const Long room = 0x1p-21 * std::abs(nearest) + 0x1p-21 * std::abs(farthest) + 1e-9;
+    ASSERT_GE(footprint.nearest, nearest - room) << trial;
+    ASSERT_LE(footprint.farthest, farthest + room) << trial;
+  }
+  EXPECT_GT(seen, 10000);
+}
 
 class AnyExecutor : public testing::TestWithParam<const char*> {
  protected:
