@@ -130,7 +130,7 @@ TEST(Pieces, AreAllOrNone) {
     EXPECT_FALSE(add(before + kPieces - 1));
     EXPECT_EQ(drawing.pieces.size(), before);
     EXPECT_EQ(drawing.points.size(), 9 * before);
-    EXPECT_EQ(reach.lo[0]<reach.hi[0], before> 0);
+    EXPECT_EQ(reach.hi[0] > reach.lo[0], before > 0);
     EXPECT_TRUE(add(before + kPieces));
   }
   EXPECT_EQ(drawing.points.size(), 9 * drawing.pieces.size()) << "inner nodes leave no points";
