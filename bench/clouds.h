@@ -24,7 +24,8 @@ inline std::vector<Eigen::Vector3d> frameOf(int points, Random& random) {
   std::vector<Eigen::Vector3d> out;
   out.reserve(static_cast<std::size_t>(points));
   for (int i = 0; i < rows * columns; ++i) {
-    const double u = (i % columns + 0.5) / columns - 0.5, v = 0.5 - (i / columns + 0.5) / rows;
+    const int column = i % columns, row = i / columns;
+    const double u = (column + 0.5) / columns - 0.5, v = 0.5 - (row + 0.5) / rows;
     const Eigen::Vector3d ray = down * Eigen::Vector3d(1, -1.4 * u, 1.05 * v);
     double nearest = (1.7 - eye.x()) / ray.x();  // the wall
     const auto meet = [&](double at, const auto& isThere) {

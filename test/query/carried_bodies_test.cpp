@@ -295,7 +295,8 @@ std::pair<VectorXd, VectorXd> drawMotion(Random& random, const World& w) {
 
 /// One motion, asked and judged.
 void look(campaign::Case& c, Random& random, World& w, const char* changed) {
-  const auto [q0, q1] = drawMotion(random, w);
+  const auto ends = drawMotion(random, w);
+  const VectorXd &q0 = ends.first, &q1 = ends.second;
   CertifiedRequest request;
   request.mode = static_cast<ContactMode>(random.below(3));
   request.max_contacts = 1000;
