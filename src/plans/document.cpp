@@ -47,6 +47,10 @@ const Json* find(const Json& object, std::initializer_list<const char*> keys) {
   return nullptr;
 }
 
+bool isEmptyText(const Json& value) {
+  return value.is_string() && value.get_ref<const std::string&>().empty();
+}
+
 bool areRows(const Json& value) {
   return value.is_array() && !value.empty() && value[0].is_array() && !value[0].empty() && value[0][0].is_number();
 }
@@ -201,7 +205,7 @@ void requireFrame(const KinematicTree& tree, const Json& message, const PoseJoin
   const Json* header = find(message, {"header"});
   const Json* frame = header && header->is_object() ? find(*header, {"frame_id"}) : nullptr;
   const bool is_root = frame && *frame == tree.linkName(tree.topologicalOrder().front());
-  if (!frame || *frame == "" || *frame == joint.parent || is_root) return;
+  if (!frame || isEmptyText(*frame) || *frame == joint.parent || is_root) return;
   refuse(
       fmt::format("{}: its poses are in the frame {} (header, frame_id), and joint '{}' moves against '{}': give them "
                   "in that, or no frame",
@@ -425,7 +429,7 @@ class Reader {
     if (depth > kDeepestMessage) return fail(label, "too many messages within messages");
     if (value.is_array()) return readList(value, label, start, depth);
     if (!value.is_object()) return fail(label, fmt::format("{} is no plan", shown(value)));
-    if (const Json* model = find(value, {"model_id"}); model && *model != "" && *model != tree_.name()) {
+    if (const Json* model = find(value, {"model_id"}); model && !isEmptyText(*model) && *model != tree_.name()) {
       return fail(label, fmt::format("the message is for the robot {} (model_id), and this one is '{}': --robot takes "
                                      "the message's",
                                      shown(*model), tree_.name()));
