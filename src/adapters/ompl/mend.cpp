@@ -304,7 +304,7 @@ class Mender {
       for (int k = 1; k < parts; ++k) fine.push_back(points[i - 1] + static_cast<double>(k) / parts * step);
       fine.push_back(points[i]);
     }
-    if (!free(fine)) return;  // by a rounding
+    if (!certainlyFree(fine)) return;  // by a rounding
     for (int pass = 0; pass < kPulls; ++pass) {
       const double length = lengthOf(fine);
       double at = 0;
@@ -313,7 +313,7 @@ class Mender {
         const VectorXd target = pointAt(before, std::min(1.0, at / length));
         for (const double part : {1.0, 0.5, 0.25}) {
           const VectorXd nearer = fine[i] + part * (target - fine[i]);
-          if (!free(Points{fine[i - 1], nearer, fine[i + 1]})) continue;
+          if (!certainlyFree(Points{fine[i - 1], nearer, fine[i + 1]})) continue;
           fine[i] = nearer;
           break;
         }
@@ -322,16 +322,16 @@ class Mender {
     points = std::move(fine);
   }
 
-  bool free(const VectorXd& from, const VectorXd& to) const {
+  bool certainlyFree(const VectorXd& from, const VectorXd& to) const {
     return manager_->isFree(JointMotion::linear(tree_, from, to), request_);
   }
 
-  bool free(const Points& points) const {
+  bool certainlyFree(const Points& points) const {
     for (std::size_t i = 1; i + 1 < points.size(); ++i) {  // both ends are the plan's own
       if (!setup_.space->satisfiesBounds(stateOf(points[i]).get())) return false;
     }
     for (std::size_t i = 1; i < points.size(); ++i) {
-      if (!free(points[i - 1], points[i])) return false;
+      if (!certainlyFree(points[i - 1], points[i])) return false;
     }
     return true;
   }
@@ -381,11 +381,11 @@ class Mender {
             points.push_back(before.back());
             return points;
           };
-          if (!free(around(1))) continue;
+          if (!certainlyFree(around(1))) continue;
           double good = 1, bad = 0;  // parts of the offset
           for (int halving = 0; halving < kShrinks; ++halving) {
             const double middle = (good + bad) / 2;
-            (free(around(middle)) ? good : bad) = middle;
+            (certainlyFree(around(middle)) ? good : bad) = middle;
           }
           return around(good);
         }
