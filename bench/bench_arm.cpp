@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
   bool merged = false, no_rivals = false;
   app.add_option("--queries", count, "free queries, and as many colliding ones, per step")->capture_default_str();
   app.add_option("--rival-queries", rival_count, "the first so many of them for FCL")->capture_default_str();
-  app.add_option("--passes", passes, "passes over the queries; the least time of each counts")
+  app.add_option("--passes", passes, "passes over the queries at least; the least time of each counts")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--steps", steps, "degrees, every joint")->capture_default_str();

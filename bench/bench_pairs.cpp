@@ -91,7 +91,7 @@ int main(int argc, char** argv) {
   app.add_option("--mesh-queries", mesh_count, "free mesh pairs, and as many colliding ones")->capture_default_str();
   app.add_option("--shape-queries", shape_count, "free shape pairs, and as many colliding ones, per set")
       ->capture_default_str();
-  app.add_option("--passes", passes, "passes over the queries; the least time of each counts")
+  app.add_option("--passes", passes, "passes over the queries at least; the least time of each counts")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--seed", seed, "of the queries")->capture_default_str();

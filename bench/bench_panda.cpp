@@ -104,7 +104,7 @@ int main(int argc, char** argv) try {
   Report report("bench_panda");
   CLI::App app("Certified queries on a planner's edges (FCL_ARTIC_DATA names the data)");
   int passes = 3;
-  app.add_option("--passes", passes, "passes over the edges; the least time of each counts")
+  app.add_option("--passes", passes, "passes over the edges at least; the least time of each counts")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   if (const auto status = readOptions(app, report, argc, argv)) return *status;

@@ -250,7 +250,7 @@ int main(int argc, char** argv) try {
   int passes = 3;
   std::size_t random = 200;
   bool no_other_robots = false;
-  app.add_option("--passes", passes, "passes over the edges; the least time of each counts")
+  app.add_option("--passes", passes, "passes over the edges at least; the least time of each counts")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--random", random, "random motions of each kind for the UR5 and the Fanuc")->capture_default_str();

@@ -296,7 +296,7 @@ int main(int argc, char** argv) {
   std::vector<int> links = {2, 3, 4, 6, 8, 10, 12, 15}, boxes = {10, 50, 100};
   std::vector<double> arm_steps = {0.1, 0.5};
   app.add_option("--edges", count, "edges of each row")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--passes", passes, "passes over the edges; the least time of each counts")
+  app.add_option("--passes", passes, "passes over the edges at least; the least time of each counts")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--seed", seed, "of scenes and edges")->capture_default_str();

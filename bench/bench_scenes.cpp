@@ -440,7 +440,7 @@ int main(int argc, char** argv) try {
   std::vector<std::size_t> obstacles = {10, 20, 100, 1000, 10000}, triangles = {1000, 10000, 100000, 1000000},
                            points = {10000, 100000, 1000000}, carried = {10000, 100000}, cuts = {1, 8, 32, 128};
   app.add_option("--queries", queries, "free motions of each scene")->check(CLI::PositiveNumber)->capture_default_str();
-  app.add_option("--passes", passes, "passes over the motions; the least time of each counts")
+  app.add_option("--passes", passes, "passes over the motions at least; the least time of each counts")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--obstacles", obstacles, "numbers of obstacles")->capture_default_str();

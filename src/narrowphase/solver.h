@@ -47,8 +47,7 @@ inline void Solver::solve(const Problem& problem, const Query& query, Answer& an
   if (!task.ended()) containment.report(open);
   if (!task.ended() && horizon.end() > 0) {
     search.testHulls(open, stage_one);
-    if (query.any && !horizon.isOver()) any.tryOverlaps(open);
-    if (query.any && !horizon.isOver()) any.tryEnds(open);
+    if (query.any && !horizon.isOver() && !any.tryOverlaps(open)) any.tryEnds(open);
     if (!horizon.isOver()) search.run(open);
   }
   statistics.narrowphase_us = task.now() - time1;

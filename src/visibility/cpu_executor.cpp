@@ -48,15 +48,16 @@ class CpuExecutor : public Executor {
   }
 
   void drawSwept(const Drawing& drawing, int view) {
-    const int pixels = drawing.resolution * drawing.resolution;
-    std::fill_n(nearest_[view], pixels, kNothing);
-    std::fill_n(farthest_[view], pixels, -kNothing);
+    const auto pixels = static_cast<std::size_t>(drawing.resolution * drawing.resolution);
+    nearest_[view].assign(pixels, kNothing);
+    farthest_[view].assign(pixels, -kNothing);
+    float *nearest = nearest_[view].data(), *farthest = farthest_[view].data();
     for (const Volume& volume : drawing.swept) {
       if (!project(drawing, volume, view, footprint_)) continue;
       anyRow(footprint_, [&](int at, int n) {
         for (int i = at; i < at + n; ++i) {
-          nearest_[view][i] = std::min(nearest_[view][i], footprint_.nearest);
-          farthest_[view][i] = std::max(farthest_[view][i], footprint_.farthest);
+          nearest[i] = std::min(nearest[i], footprint_.nearest);
+          farthest[i] = std::max(farthest[i], footprint_.farthest);
         }
         return false;
       });
@@ -66,7 +67,7 @@ class CpuExecutor : public Executor {
   bool meets(const Drawing& drawing, const Volume& piece, int view) {
     if (!project(drawing, piece, view, footprint_)) return false;
     return anyRow(footprint_, [&](int at, int n) {
-      const float *nearest = nearest_[view] + at, *farthest = farthest_[view] + at;
+      const float *nearest = nearest_[view].data() + at, *farthest = farthest_[view].data() + at;
       int found = 0;
       for (int i = 0; i < n; ++i) found |= footprint_.farthest >= nearest[i] && footprint_.nearest <= farthest[i];
       return found != 0;
@@ -74,9 +75,7 @@ class CpuExecutor : public Executor {
   }
 
   Footprint footprint_;
-  /// Depths of the swept volumes, by pixel.
-  float nearest_[kViews][kLargestResolution * kLargestResolution],
-      farthest_[kViews][kLargestResolution * kLargestResolution];
+  std::vector<float> nearest_[kViews], farthest_[kViews];  ///< depths of the swept volumes, by pixel
 };
 
 }  // namespace

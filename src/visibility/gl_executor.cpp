@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Each footprint is drawn as its box of whole pixels. Sides are evaluated at the pixels' centres,
-// relative to the view's tile: the rasteriser snaps and interpolates nothing that counts.
+// Each footprint is drawn as its box of whole pixels. Sides are evaluated at the pixels' centres, relative to the
+// view's tile: the rasteriser snaps and interpolates nothing that counts.
 #include <algorithm>
 #include <cstddef>
 #include <stdexcept>

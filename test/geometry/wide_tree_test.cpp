@@ -111,8 +111,9 @@ TEST(WideTree, HoldsEachLeafOnceInBoxesThatHoldIt) {
     EXPECT_EQ(seen, std::vector<int>(count, 1));
     parents[0] = 1;
     EXPECT_EQ(parents, std::vector<int>(tree.size(), 1));
-    // Full nodes would be count / 7; at each level the last one may have few children. Nodes of a small scene have two.
-    EXPECT_LE(tree.size(), count > 128 ? count / 7 + 4 : count);
+    // Full nodes would be count / 7; at each level the last one may have few children. Nodes of a small scene
+    // have two.
+    EXPECT_LE(tree.size(), count > 128 ? count / 7 + 4 : count / 2 + 1);
   }
   EXPECT_TRUE(wideTree({}).empty());
 }
